@@ -145,7 +145,7 @@ static struct gz_transfer opaque_from(double isovalue, const double range[2],
 static enum gz_result check_scene(const struct running *running)
 {
 	const struct gz_scene *scene = &running->stage.scene;
-	if (scene->meshes)
+	if (scene->meshes || scene->labels)
 		gz_err(running->log,
 		       "%s: a scene with meshes cannot be compared: not every technique draws them",
 		       running->stage.path);

@@ -406,7 +406,7 @@ int main(int argc, char **argv)
 	if (gz_scene_load(argv[1], NULL, &bench.log, &bench.scene) != GZ_OK)
 		return 1;
 	const struct gz_picture_maker_params params = { .backend = "cpu" };
-	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const size_t count =
 		gz_scene_list_objects(&bench.scene, objects, sizeof objects / sizeof objects[0]);
 	const bool done = gz_workers_create(0, &bench.workers) == GZ_OK &&

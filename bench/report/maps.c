@@ -73,7 +73,7 @@ static enum gz_result render_standard(const struct gz_scene *scene, const struct
 		.height = picture->height,
 		.image = picture,
 	};
-	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	struct gz_picture_maker *maker = NULL;
 	struct gz_image *made;
 	const size_t count =

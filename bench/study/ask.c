@@ -292,16 +292,24 @@ static enum gz_result hash_variants(const struct asking *asking, struct gz_hash 
 	return result;
 }
 
-/* Of the meshes' places and triangles. */
+/* Of a mesh's places and triangles. */
+static void hash_mesh(struct gz_hash *hash, const struct gz_mesh *mesh)
+{
+	if (mesh->triangle_count == 0)
+		return;
+	gz_hash_add(hash, mesh->positions, mesh->vertex_count * sizeof mesh->positions[0]);
+	gz_hash_add(hash, mesh->triangles, mesh->triangle_count * sizeof mesh->triangles[0]);
+}
+
 static void hash_meshes(struct gz_hash *hash, const struct gz_scene *scene)
 {
-	for (size_t i = 0; scene->meshes && i < scene->settings.objects.count; i++) {
-		const struct gz_mesh *mesh = &scene->meshes[i];
-		if (mesh->triangle_count == 0 || !scene->settings.objects.items[i].visible)
+	for (size_t i = 0; i < scene->settings.objects.count; i++) {
+		if (!scene->settings.objects.items[i].visible)
 			continue;
-		gz_hash_add(hash, mesh->positions, mesh->vertex_count * sizeof mesh->positions[0]);
-		gz_hash_add(hash, mesh->triangles,
-			    mesh->triangle_count * sizeof mesh->triangles[0]);
+		if (scene->meshes)
+			hash_mesh(hash, &scene->meshes[i]);
+		for (size_t k = 0; scene->labels && k < scene->labels[i].count; k++)
+			hash_mesh(hash, &scene->labels[i].items[k].mesh);
 	}
 }
 
@@ -309,7 +317,7 @@ static void hash_meshes(struct gz_hash *hash, const struct gz_scene *scene)
 static void hash_techniques(struct gz_hash *hash, const struct gz_scene *scene)
 {
 	const struct gz_technique *first = gz_scene_main_technique(&scene->settings);
-	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const size_t count =
 		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
 	gz_hash_add_text(hash, first->name);

@@ -226,7 +226,7 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 static enum gz_result show_scene(struct gz_stage *stage, const struct gz_study_backend *backend,
 				 struct gz_picture_maker **maker)
 {
-	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const struct gz_picture_maker_params params = {
 		.backend = backend->name,
 		.backend_params = { .threads = backend->threads,

@@ -32,6 +32,9 @@ struct gz_mesh {
 	float (*normals)[3];      /**< of each vertex, of length 1, out of the object */
 	uint32_t (*triangles)[3]; /**< numbers of vertices, counter-clockwise seen from outside;
 				       NULL if there are no triangles */
+	/** How many of the triangles, the last ones, a neighbouring mesh has, too, reversed: what
+	 *  is seen of them from behind is the neighbour. */
+	size_t shared_count;
 };
 
 /**

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -79,21 +80,58 @@ static char *put_floats(char *at, const float values[3])
 	return at;
 }
 
-static void write_ply(const struct gz_mesh *mesh, struct mesh_writer *to)
+/* What is written: one mesh, or several with labels and colours. */
+struct mesh_content {
+	const struct gz_mesh_part *parts;
+	size_t count;
+	bool labelled;
+	uint64_t vertices, triangles; /* of all parts */
+};
+
+static char *put_colour(char *at, const float colour[3])
+{
+	for (int i = 0; i < 3; i++)
+		*at++ = (char)(uint8_t)(colour[i] * 255 + 0.5F);
+	return at;
+}
+
+static void write_ply_head(const struct mesh_content *content, struct mesh_writer *to)
 {
 	put_text(to, "ply\nformat binary_little_endian 1.0\ncomment made by Gazecast; unit: mm\n");
-	put_text(to, "element vertex %zu\n", mesh->vertex_count);
+	put_text(to, "element vertex %" PRIu64 "\n", content->vertices);
 	put_text(to, "property float x\nproperty float y\nproperty float z\n"
 		     "property float nx\nproperty float ny\nproperty float nz\n");
-	put_text(to, "element face %zu\nproperty list uchar int vertex_indices\nend_header\n",
-		 mesh->triangle_count);
-	for (size_t v = 0; v < mesh->vertex_count; v++)
-		put_floats(put_floats(take_room(to, 24), mesh->positions[v]), mesh->normals[v]);
-	for (size_t t = 0; t < mesh->triangle_count; t++) {
-		char *at = take_room(to, 13);
-		*at++ = 3;
-		for (int c = 0; c < 3; c++)
-			at = put_u32(at, mesh->triangles[t][c]);
+	if (content->labelled)
+		put_text(to, "property uchar red\nproperty uchar green\nproperty uchar blue\n");
+	put_text(to, "element face %" PRIu64 "\nproperty list uchar int vertex_indices\n",
+		 content->triangles);
+	put_text(to, "%send_header\n", content->labelled ? "property int label\n" : "");
+}
+
+static void write_ply(const struct mesh_content *content, struct mesh_writer *to)
+{
+	uint32_t first = 0;
+	write_ply_head(content, to);
+	for (size_t i = 0; i < content->count; i++) {
+		const struct gz_mesh *mesh = content->parts[i].mesh;
+		for (size_t v = 0; v < mesh->vertex_count; v++) {
+			char *at = take_room(to, content->labelled ? 27 : 24);
+			at = put_floats(put_floats(at, mesh->positions[v]), mesh->normals[v]);
+			if (content->labelled)
+				put_colour(at, content->parts[i].colour);
+		}
+	}
+	for (size_t i = 0; i < content->count; i++) {
+		const struct gz_mesh *mesh = content->parts[i].mesh;
+		for (size_t t = 0; t < mesh->triangle_count; t++) {
+			char *at = take_room(to, content->labelled ? 17 : 13);
+			*at++ = 3;
+			for (int c = 0; c < 3; c++)
+				at = put_u32(at, first + mesh->triangles[t][c]);
+			if (content->labelled)
+				put_u32(at, (uint32_t)content->parts[i].label);
+		}
+		first += (uint32_t)mesh->vertex_count;
 	}
 }
 
@@ -108,18 +146,31 @@ static void put_numbers(struct mesh_writer *to, const char *keyword, const float
 	put_text(to, "%s %s %s %s\n", keyword, number[0], number[1], number[2]);
 }
 
-static void write_obj(const struct gz_mesh *mesh, struct mesh_writer *to)
+/* Corners are counted from 1, through all parts. */
+static void write_obj_part(const struct gz_mesh *mesh, uint32_t first, struct mesh_writer *to)
 {
-	put_text(to, "# made by Gazecast; unit: mm\n");
 	for (size_t v = 0; v < mesh->vertex_count; v++)
 		put_numbers(to, "v", mesh->positions[v]);
 	for (size_t v = 0; v < mesh->vertex_count; v++)
 		put_numbers(to, "vn", mesh->normals[v]);
 	for (size_t t = 0; t < mesh->triangle_count; t++) {
-		const uint32_t *corner = mesh->triangles[t];
-		/* counted from 1 */
-		put_text(to, "f %u//%u %u//%u %u//%u\n", corner[0] + 1, corner[0] + 1,
-			 corner[1] + 1, corner[1] + 1, corner[2] + 1, corner[2] + 1);
+		uint32_t corner[3];
+		for (int c = 0; c < 3; c++)
+			corner[c] = first + mesh->triangles[t][c] + 1;
+		put_text(to, "f %u//%u %u//%u %u//%u\n", corner[0], corner[0], corner[1], corner[1],
+			 corner[2], corner[2]);
+	}
+}
+
+static void write_obj(const struct mesh_content *content, struct mesh_writer *to)
+{
+	uint32_t first = 0;
+	put_text(to, "# made by Gazecast; unit: mm\n");
+	for (size_t i = 0; i < content->count; i++) {
+		if (content->labelled)
+			put_text(to, "o label_%" PRId32 "\n", content->parts[i].label);
+		write_obj_part(content->parts[i].mesh, first, to);
+		first += (uint32_t)content->parts[i].mesh->vertex_count;
 	}
 }
 
@@ -141,13 +192,8 @@ static void plane_normal(const struct gz_mesh *mesh, const uint32_t corners[3], 
 		out[axis] = square > 0 ? (float)(normal[axis] / sqrt(square)) : 0;
 }
 
-static void write_stl(const struct gz_mesh *mesh, struct mesh_writer *to)
+static void write_stl_part(const struct gz_mesh *mesh, struct mesh_writer *to)
 {
-	/* A header that begins with "solid" would be taken for text. */
-	char *head = take_room(to, 84);
-	memset(head, ' ', 80);
-	memcpy(head, "made by Gazecast; unit: mm", 26);
-	put_u32(head + 80, (uint32_t)mesh->triangle_count);
 	for (size_t t = 0; t < mesh->triangle_count; t++) {
 		const uint32_t *corners = mesh->triangles[t];
 		float normal[3];
@@ -159,9 +205,20 @@ static void write_stl(const struct gz_mesh *mesh, struct mesh_writer *to)
 	}
 }
 
+static void write_stl(const struct mesh_content *content, struct mesh_writer *to)
+{
+	/* A header that begins with "solid" would be taken for text. */
+	char *head = take_room(to, 84);
+	memset(head, ' ', 80);
+	memcpy(head, "made by Gazecast; unit: mm", 26);
+	put_u32(head + 80, (uint32_t)content->triangles);
+	for (size_t i = 0; i < content->count; i++)
+		write_stl_part(content->parts[i].mesh, to);
+}
+
 static const struct mesh_format {
 	const char *ending;
-	void (*write)(const struct gz_mesh *mesh, struct mesh_writer *to);
+	void (*write)(const struct mesh_content *content, struct mesh_writer *to);
 } mesh_formats[] = {
 	{ ".ply", write_ply },
 	{ ".obj", write_obj },
@@ -218,7 +275,8 @@ static enum gz_result close_mesh_file(struct mesh_writer *to)
 	return to->result;
 }
 
-enum gz_result gz_mesh_write(const struct gz_mesh *mesh, const char *path, const struct gz_log *log)
+static enum gz_result write_content(const struct mesh_content *content, const char *path,
+				    const struct gz_log *log)
 {
 	struct mesh_writer to;
 	const struct mesh_format *format = mesh_format_of(path);
@@ -226,8 +284,36 @@ enum gz_result gz_mesh_write(const struct gz_mesh *mesh, const char *path, const
 		gz_err(log, "%s: unknown ending of a mesh; use " GZ_MESH_ENDINGS, path);
 		return GZ_ERR_UNSUPPORTED;
 	}
+	if (content->vertices > GZ_MESH_COUNT_MAX || content->triangles > GZ_MESH_COUNT_MAX) {
+		gz_err(log,
+		       "%s: a file holds at most %" PRId32 " vertices and triangles, not %" PRIu64
+		       " and %" PRIu64,
+		       path, GZ_MESH_COUNT_MAX, content->vertices, content->triangles);
+		return GZ_ERR_FULL;
+	}
 	if (open_mesh_file(&to, path, log) != GZ_OK)
 		return to.result;
-	format->write(mesh, &to);
+	format->write(content, &to);
 	return close_mesh_file(&to);
+}
+
+enum gz_result gz_mesh_write(const struct gz_mesh *mesh, const char *path, const struct gz_log *log)
+{
+	const struct gz_mesh_part part = { .mesh = mesh };
+	const struct mesh_content content = { .parts = &part,
+					      .count = 1,
+					      .vertices = mesh->vertex_count,
+					      .triangles = mesh->triangle_count };
+	return write_content(&content, path, log);
+}
+
+enum gz_result gz_mesh_write_parts(const struct gz_mesh_part *parts, size_t count, const char *path,
+				   const struct gz_log *log)
+{
+	struct mesh_content content = { .parts = parts, .count = count, .labelled = true };
+	for (size_t i = 0; i < count; i++) {
+		content.vertices += parts[i].mesh->vertex_count;
+		content.triangles += parts[i].mesh->triangle_count;
+	}
+	return write_content(&content, path, log);
 }

@@ -38,4 +38,27 @@ bool gz_mesh_file_named(const char *path);
 enum gz_result gz_mesh_write(const struct gz_mesh *mesh, const char *path,
 			     const struct gz_log *log);
 
+/** One of several meshes of a file. */
+struct gz_mesh_part {
+	const struct gz_mesh *mesh; /**< borrowed */
+	int32_t label;              /**< a number that tells the parts apart */
+	float colour[3];            /**< red, green and blue, [0, 1] */
+};
+
+/**
+ * Write several meshes to one file, one after the other; each keeps its own vertices. As
+ * gz_mesh_write(), and besides:
+ *
+ *  - .ply: each vertex has the colour of its part (uchar red, green, blue), each face its label
+ *    (int label)
+ *  - .obj: each part is an object "label_N"
+ *  - .stl: labels and colours are lost
+ *
+ * @retval GZ_ERR_FULL  no space is left, or more than GZ_MESH_COUNT_MAX vertices or triangles;
+ *                      logged
+ * @return otherwise as gz_mesh_write()
+ */
+enum gz_result gz_mesh_write_parts(const struct gz_mesh_part *parts, size_t count, const char *path,
+				   const struct gz_log *log);
+
 #endif

@@ -4,11 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
+#include "base/workers.h"
 #include "render/light/cube.h"
 #include "render/mesh/mesh_read.h"
 #include "render/particles/particles.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_files.h"
+#include "render/scene/scene_open.h"
 #include "render/scene/techniques.h"
 #include "render/transfer/histogram.h"
 #include "render/transfer/transfer_presets.h"
@@ -101,8 +104,12 @@ static void free_meshes(struct gz_scene *scene)
 {
 	for (size_t i = 0; scene->meshes && i < scene->settings.objects.count; i++)
 		gz_mesh_free(&scene->meshes[i]);
+	for (size_t i = 0; scene->labels && i < scene->settings.objects.count; i++)
+		gz_label_surfaces_free(&scene->labels[i]);
 	free(scene->meshes);
+	free(scene->labels);
 	scene->meshes = NULL;
+	scene->labels = NULL;
 }
 
 static enum gz_result load_mesh(const struct scene_loader *loader,
@@ -131,6 +138,112 @@ static enum gz_result load_meshes(const struct scene_loader *loader, struct gz_s
 	return result;
 }
 
+/* The volume of an object's labels. A raw file has the layout of section [volume]. */
+static enum gz_result load_label_volume(const struct scene_loader *loader,
+					const struct gz_scene_object *object,
+					struct gz_volume *out_volume)
+{
+	const struct gz_scene_settings *settings = loader->settings;
+	char path[GZ_PATH_SIZE];
+	const enum gz_result result =
+		find_named_file(loader, object->section, object->labels, path);
+	if (result != GZ_OK)
+		return result;
+	struct gz_loading loading = loader->loading ? *loader->loading : (struct gz_loading) { 0 };
+	loading.resampling = (enum gz_resampling)settings->resample;
+	struct gz_raw_layout raw = { .type = (enum gz_raw_type)settings->type,
+				     .big_endian = settings->endian == 1,
+				     .channels = settings->channels };
+	memcpy(raw.dims, settings->dims, sizeof raw.dims);
+	memcpy(raw.spacing, settings->spacing, sizeof raw.spacing);
+	const bool is_raw = gz_file_kind_by_name(path) == GZ_FILE_RAW;
+	return gz_volume_load(path, is_raw && settings->dims[0] > 0 ? &raw : NULL, &loading,
+			      loader->log, out_volume);
+}
+
+static enum gz_result load_labels_of(const struct scene_loader *loader,
+				     const struct gz_scene_object *object,
+				     struct gz_label_surfaces *out_surfaces)
+{
+	struct gz_volume volume;
+	struct gz_workers *workers = NULL;
+	enum gz_result result = load_label_volume(loader, object, &volume);
+	if (result != GZ_OK)
+		return result;
+	/* Without further threads the calling one does all. */
+	(void)gz_workers_create(0, &workers);
+	const struct gz_label_request request = {
+		.volume = &volume,
+		.name = object->labels,
+		.smoothing = loader->settings->labels.smoothing,
+	};
+	const int64_t start_ns = gz_clock_now_ns();
+	result = gz_label_surfaces_make(&request, workers, loader->log, out_surfaces);
+	gz_debug(loader->log, "%s: surfaces of %zu labels: %.0f ms", object->labels,
+		 result == GZ_OK ? out_surfaces->count : 0,
+		 gz_ns_to_ms(gz_clock_now_ns() - start_ns));
+	gz_workers_destroy(&workers);
+	gz_volume_free(&volume);
+	if (result == GZ_OK && out_surfaces->count == 0)
+		gz_warn(loader->log, "%s: %s: %s holds no label: every voxel is 0", loader->name,
+			object->section, object->labels);
+	return result;
+}
+
+static enum gz_result load_labels(const struct scene_loader *loader, struct gz_scene *scene)
+{
+	const struct gz_scene_objects *objects = &loader->settings->objects;
+	enum gz_result result = GZ_OK;
+	size_t count = 0;
+	for (size_t i = 0; i < objects->count && result == GZ_OK; i++) {
+		if (!objects->items[i].labels[0])
+			continue;
+		if (!scene->labels)
+			scene->labels = calloc(objects->count, sizeof *scene->labels);
+		if (!scene->labels) {
+			gz_err(loader->log, "%s: no memory for its labels", loader->name);
+			return GZ_ERR_NO_MEM;
+		}
+		result = load_labels_of(loader, &objects->items[i], &scene->labels[i]);
+		count += scene->labels[i].count;
+	}
+	if (result == GZ_OK && count > GZ_LABELS_MAX) {
+		gz_err(loader->log, "%s: its objects have %zu labels together; %d can be shown",
+		       loader->name, count, GZ_LABELS_MAX);
+		result = GZ_ERR_FULL;
+	}
+	return result;
+}
+
+/* What is done to each mesh of a scene. */
+typedef void mesh_step(struct gz_mesh *mesh, void *user);
+
+static void each_mesh(struct gz_scene *scene, mesh_step *step, void *user)
+{
+	for (size_t i = 0; i < scene->settings.objects.count; i++) {
+		if (scene->meshes)
+			step(&scene->meshes[i], user);
+		for (size_t k = 0; scene->labels && k < scene->labels[i].count; k++)
+			step(&scene->labels[i].items[k].mesh, user);
+	}
+}
+
+/* The box of all meshes. */
+struct mesh_box {
+	double least[3], greatest[3];
+};
+
+static void add_to_box(struct gz_mesh *mesh, void *user)
+{
+	struct mesh_box *box = user;
+	gz_mesh_bound(mesh, box->least, box->greatest);
+}
+
+static void move_to_centre(struct gz_mesh *mesh, void *user)
+{
+	gz_mesh_move(mesh, user);
+}
+
 /* Voxels along each edge of the empty space of a scene without a volume, and its shortest edge as a
  * share of the longest, so that flat meshes have a box. Chosen: the least that has corners. */
 enum { EMPTY_EDGE = 2 };
@@ -154,12 +267,12 @@ static void lay_out_empty_space(const double least[3], const double greatest[3],
 /* Make the empty space around all meshes, and move them so that its centre is the origin. */
 static enum gz_result make_empty_space(const struct scene_loader *loader, struct gz_scene *scene)
 {
-	const size_t count = loader->settings->objects.count;
-	double least[3] = { INFINITY, INFINITY, INFINITY };
-	double greatest[3] = { -INFINITY, -INFINITY, -INFINITY }, centre[3];
+	struct mesh_box box = { { INFINITY, INFINITY, INFINITY },
+				{ -INFINITY, -INFINITY, -INFINITY } };
+	const double *least = box.least, *greatest = box.greatest;
+	double centre[3];
 	struct gz_volume *volume = &scene->volume;
-	for (size_t i = 0; i < count; i++)
-		gz_mesh_bound(&scene->meshes[i], least, greatest);
+	each_mesh(scene, add_to_box, &box);
 	if (!(greatest[0] > least[0] || greatest[1] > least[1] || greatest[2] > least[2])) {
 		gz_err(loader->log,
 		       "%s: its meshes have no extent, so nothing can be seen; name one with "
@@ -178,8 +291,7 @@ static enum gz_result make_empty_space(const struct scene_loader *loader, struct
 	gz_volume_find_range(volume);
 	for (int axis = 0; axis < 3; axis++)
 		centre[axis] = 0.5 * (least[axis] + greatest[axis]);
-	for (size_t i = 0; i < count; i++)
-		gz_mesh_move(&scene->meshes[i], centre);
+	each_mesh(scene, move_to_centre, centre);
 	return GZ_OK;
 }
 
@@ -332,6 +444,8 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 	if (result == GZ_OK)
 		result = load_meshes(&loader, &scene);
 	if (result == GZ_OK)
+		result = load_labels(&loader, &scene);
+	if (result == GZ_OK)
 		result = gz_scene_has_volume(&scene.settings) ? load_volume(&loader, &scene.volume)
 							      : make_empty_space(&loader, &scene);
 	if (result == GZ_OK && !given && !parts->volume_alone)
@@ -363,10 +477,12 @@ enum gz_result gz_scene_try(const struct gz_scene_source *source, const struct g
 		result = load_named_transfer(&loader, &transfer);
 	if (result == GZ_OK && !settings.volume_procedural && gz_scene_has_volume(&settings))
 		result = find_volume(&loader, path);
-	for (size_t i = 0; i < settings.objects.count && result == GZ_OK; i++)
-		if (settings.objects.items[i].mesh[0])
-			result = find_named_file(&loader, settings.objects.items[i].section,
-						 settings.objects.items[i].mesh, path);
+	for (size_t i = 0; i < settings.objects.count && result == GZ_OK; i++) {
+		const struct gz_scene_object *item = &settings.objects.items[i];
+		const char *file = item->mesh[0] ? item->mesh : item->labels;
+		if (file[0])
+			result = find_named_file(&loader, item->section, file, path);
+	}
 	if (result == GZ_OK)
 		*out_settings = settings;
 	return result;
@@ -408,6 +524,30 @@ static void list_volumes(const struct gz_scene *scene, struct gz_object *out_obj
 	}
 }
 
+uint32_t gz_scene_label_id(size_t object, size_t label)
+{
+	return (uint32_t)(label + 1) << 8 | (uint32_t)(object + 2);
+}
+
+/* Append each label of an object. */
+static void list_labels(const struct gz_scene *scene, size_t index, struct gz_object *out_objects,
+			size_t room, size_t *count)
+{
+	const struct gz_scene_object *item = &scene->settings.objects.items[index];
+	const struct gz_label_surfaces *labels = &scene->labels[index];
+	for (size_t i = 0; item->visible && i < labels->count; i++) {
+		const struct gz_object object = {
+			.technique = gz_scene_technique(&scene->settings, item),
+			.id = gz_scene_label_id(index, i),
+			.volume = &scene->volume,
+			.transfer = &scene->transfer,
+			.mesh = &labels->items[i].mesh,
+			.colour = labels->items[i].colour,
+		};
+		list_object(&object, out_objects, room, count);
+	}
+}
+
 size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out_objects,
 			     size_t room)
 {
@@ -426,6 +566,8 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
 		if (item->mesh[0] && item->visible)
 			list_object(&object, out_objects, room, &count);
 	}
+	for (size_t i = 0; scene->labels && i < settings->objects.count; i++)
+		list_labels(scene, i, out_objects, room, &count);
 	return count;
 }
 

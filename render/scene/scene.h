@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/data/volume.h"
+#include "render/mesh/label_surfaces.h"
 #include "render/mesh/mesh.h"
 #include "render/scene/scene_settings.h"
 #include "render/technique/technique.h"
@@ -22,9 +23,15 @@ struct gz_scene {
 	struct gz_volume volume;
 	struct gz_transfer transfer;
 	/** Of each of the settings' objects; empty for those of other kinds. NULL: no object has a
-	 *  mesh. Of a scene of meshes alone, the volume is empty space: the box of all meshes. */
+	 *  mesh. Of a scene of meshes and labels alone, the volume is empty space: their box. */
 	struct gz_mesh *meshes;
+	/** Likewise the surfaces of labels. NULL: no object has labels. */
+	struct gz_label_surfaces *labels;
 };
+
+/** Most objects that gz_scene_list_objects() lists: the volume, those of the settings and labels.
+ */
+#define GZ_SCENE_LISTED_MAX (1 + GZ_SCENE_OBJECTS_MAX + GZ_LABELS_MAX)
 
 /**
  * Read a scene with its volume and transfer function. Relative paths are searched beside the scene,
@@ -134,15 +141,20 @@ enum gz_result gz_scene_load_transfer(const char *scene, const char *file, const
 				      struct gz_transfer *out_transfer);
 
 /**
- * List the visible objects of a scene for gz_picture_maker_show(): the volume, number 1, and the
- * meshes, whose numbers are 2 and their place among the settings' objects.
+ * List the visible objects of a scene for gz_picture_maker_show(): the volume, number 1; the
+ * meshes, whose numbers are 2 and their place among the settings' objects; and each label as an
+ * object of its own, with its colour: gz_scene_label_id().
  *
  * @param scene  loaded; the list borrows from it
  * @param[out] out_objects  the first @p room of them; their revisions are 0
- * @return how many there are
+ * @return how many there are, at most GZ_SCENE_LISTED_MAX
  */
 size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out_objects,
 			     size_t room);
+
+/** The number of an object that is a label: 256 times 1 + its place among the labels of its object,
+ *  plus 2 and the place of that object among the settings'. So the lowest byte tells the object. */
+uint32_t gz_scene_label_id(size_t object, size_t label);
 
 /** Free what the scene holds and zero it. */
 void gz_scene_free(struct gz_scene *scene);

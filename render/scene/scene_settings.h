@@ -17,6 +17,7 @@
 #include "render/accumulate/temporal.h"
 #include "render/attention/attention.h"
 #include "render/data/volume.h"
+#include "render/mesh/label_surfaces.h"
 #include "render/particles/particle_grid.h"
 #include "render/picture/camera.h"
 #include "render/plan/foveation.h"
@@ -44,6 +45,7 @@ struct gz_scene_settings {
 	int time_point;    /**< of a series, from 1 */
 	int memory_mib;    /**< for bricks; 0 = a quarter of the machine's memory */
 	struct gz_particle_grid particles; /**< how a file of particles becomes a volume */
+	struct gz_label_look labels;       /**< how labels become surfaces */
 	char transfer_file[GZ_PATH_SIZE];  /**< empty: the object's, or one made for the volume */
 	char transfer_also[GZ_PATH_SIZE];  /**< further ones for studies, separated by blanks */
 	struct gz_scene_objects objects;   /**< sections [object NAME] */
@@ -64,6 +66,7 @@ struct gz_scene_settings {
 enum gz_scene_table {
 	GZ_SCENE_VOLUME,
 	GZ_SCENE_PARTICLES,
+	GZ_SCENE_LABELS,
 	GZ_SCENE_TRANSFER,
 	GZ_SCENE_CAMERA,
 	GZ_SCENE_IMAGE,

@@ -21,8 +21,8 @@ static const char *const isosurface_backends[] = { "cpu", NULL };
 
 const struct gz_technique gz_isosurface_technique = {
 	.name = "isosurface",
-	.help = "casts rays at the surface where a volume has one value, and at meshes",
-	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_MESH | GZ_OBJECT_PARTICLES,
+	.help = "casts rays at the surface where a volume has one value, at labels and at meshes",
+	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_LABELS | GZ_OBJECT_MESH | GZ_OBJECT_PARTICLES,
 	.objects_max = SURFACES_MAX,
 	.backends = isosurface_backends,
 	.sharing = GZ_SHARES_AS_OPAQUE,

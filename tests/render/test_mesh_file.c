@@ -15,6 +15,7 @@
 #include "mesh_fields.h"
 #include "render/mesh/isosurface.h"
 #include "render/mesh/mesh_file.h"
+#include "render/mesh/mesh_read.h"
 #include "volume_files.h"
 
 static struct gz_mesh ball_mesh(void)
@@ -248,6 +249,59 @@ static void names_that_cannot_be_written_are_refused(void **state)
 	gz_mesh_free(&mesh);
 }
 
+/* Where the line "end_header" of a PLY ends. */
+static const char *after_head(const char *bytes)
+{
+	const char *end = strstr(bytes, "end_header\n");
+	assert_non_null(end);
+	return end + strlen("end_header\n");
+}
+
+static void parts_have_colours_labels_and_vertices_of_their_own(void **state)
+{
+	(void)state;
+	struct gz_mesh ball = ball_mesh(), read;
+	const struct gz_mesh_part parts[2] = { { &ball, 7, { 1, 0.5F, 0 } },
+					       { &ball, -3, { 0, 0, 1 } } };
+	size_t size;
+	char path[128];
+	snprintf(path, sizeof path, "%s", files_path("parts.ply"));
+	assert_int_equal(gz_mesh_write_parts(parts, 2, path, NULL), GZ_OK);
+	char *bytes = read_all(path, &size);
+	const char *at = after_head(bytes), *faces = at + 54 * ball.vertex_count;
+	assert_int_equal((size_t)(bytes + size - at),
+			 2 * (27 * ball.vertex_count + 17 * ball.triangle_count));
+	assert_memory_equal(at + 24, "\xFF\x80\x00", 3);
+	assert_memory_equal(at + 27 * ball.vertex_count + 24, "\x00\x00\xFF", 3);
+	const char *second = faces + 17 * ball.triangle_count;
+	assert_int_equal(u32_at(faces + 13), 7);
+	assert_int_equal((int32_t)u32_at(second + 13), -3);
+	for (int c = 0; c < 3; c++)
+		assert_int_equal(u32_at(second + 1 + 4 * c),
+				 ball.triangles[0][c] + ball.vertex_count);
+	free(bytes);
+	static const char *const names[] = { "parts.ply", "parts.obj", "parts.stl" };
+	for (int i = 0; i < 3; i++) {
+		snprintf(path, sizeof path, "%s", files_path(names[i]));
+		assert_int_equal(gz_mesh_write_parts(parts, 2, path, NULL), GZ_OK);
+		assert_int_equal(gz_mesh_read(path, NULL, &read), GZ_OK);
+		assert_int_equal(read.triangle_count, 2 * ball.triangle_count);
+		gz_mesh_free(&read);
+	}
+	gz_mesh_free(&ball);
+}
+
+static void parts_too_many_for_a_file_are_refused_before_it_is_made(void **state)
+{
+	(void)state;
+	const struct gz_mesh huge = { .vertex_count = GZ_MESH_COUNT_MAX };
+	const struct gz_mesh_part parts[2] = { { .mesh = &huge }, { .mesh = &huge } };
+	char path[128];
+	snprintf(path, sizeof path, "%s", files_path("huge.ply"));
+	assert_int_equal(gz_mesh_write_parts(parts, 2, path, NULL), GZ_ERR_FULL);
+	assert_int_equal(access(path, F_OK), -1);
+}
+
 TEST_SUITE(mesh_file)
 {
 	const struct CMUnitTest tests[] = {
@@ -258,6 +312,8 @@ TEST_SUITE(mesh_file)
 		cmocka_unit_test(full_disk_is_told_and_keeps_the_older_file),
 		cmocka_unit_test(device_is_written_to_and_not_replaced),
 		cmocka_unit_test(names_that_cannot_be_written_are_refused),
+		cmocka_unit_test(parts_have_colours_labels_and_vertices_of_their_own),
+		cmocka_unit_test(parts_too_many_for_a_file_are_refused_before_it_is_made),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

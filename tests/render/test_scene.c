@@ -124,8 +124,10 @@ static const struct refusal refusals[] = {
 	{ "[object a]\nvolume = a.nii\nmesh = a.ply\n", "s.scene: object a: give one of" },
 	{ "[object a]\nmesh = a.ply\n", "s.scene: object a: the technique raycast does not show "
 					"mesh; set technique = isosurface" },
-	{ "[object a]\nlabels = a.nii\n", "s.scene: object a: no technique of this version shows "
-					  "labels; an object may have: volume, mesh, particles" },
+	{ "[object a]\nlabels = a.nii\n", "s.scene: object a: the technique raycast does not show "
+					  "labels; set technique = isosurface" },
+	{ SCENE "[labels]\nsmoothing = 61\n",
+	  "s.scene:7: labels.smoothing: 61 is outside 0 to 60" },
 	{ "[object a]\nparticles = a.ply\n[object b]\nvolume = b.nii\n",
 	  "s.scene: 2 volumes are given" },
 	{ SCENE "[particles]\ngrid = octree\n", "s.scene:7: particles.grid: octree is not sph" },

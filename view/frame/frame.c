@@ -154,7 +154,7 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 
 static enum gz_result show_scene_objects(struct gz_frame_maker *maker)
 {
-	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const size_t count =
 		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
 	for (size_t i = 0; i < count; i++) {

@@ -45,8 +45,10 @@ enum gz_result gz_view_write_volume(const struct gz_view_options *options,
 /**
  * gazeview --write-mesh: make the surface of the scene's volume at options->isovalue, write it, and
  * print a line about it on stdout. An isovalue that the data do not reach gives an empty mesh and a
- * warning.
+ * warning. Of a scene with labels, write the surfaces of all labels instead, and print a line about
+ * each.
  *
+ * @retval GZ_ERR_INVAL        there are no labels, and no isovalue is given; logged
  * @retval GZ_ERR_UNSUPPORTED  another ending, or the volume is stored in bricks; logged
  * @return otherwise the results of gz_scene_open(), gz_isosurface_make() and gz_mesh_write();
  * logged except GZ_ERR_CANCELLED, which a signal causes

@@ -72,8 +72,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "write the scene's volume to this file and exit: .gzb (bricks, for volumes "
 		  "larger than memory) or .nrrd" },
 	{ "write-mesh", GZ_OPTION_STRING, AT(write_mesh), .max = GZ_PATH_SIZE,
-	  .help = "write the surface of the scene's volume at --isovalue to this file, in mm, and "
-		  "exit: .ply, .obj or .stl" },
+	  .help = "write the scene's labels, or its volume's surface at --isovalue, to this file, "
+		  "in mm, and exit: .ply, .obj or .stl" },
 	{ "isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -1e30, 1e30,
 	  .help = "data value of the surface that --write-mesh writes or --technique isosurface "
 		  "shows; short for --isosurface.isovalue" },
@@ -142,7 +142,7 @@ const struct gz_option gz_view_option_table[] = {
 
 const size_t gz_view_option_count = sizeof gz_view_option_table / sizeof gz_view_option_table[0];
 
-static bool is_given(const struct gz_view_options *options, const char *key)
+bool gz_view_option_given(const struct gz_view_options *options, const char *key)
 {
 	for (size_t i = 0; i < gz_view_option_count; i++)
 		if (strcmp(gz_view_option_table[i].key, key) == 0)
@@ -199,7 +199,7 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t k = 0; k < sizeof others / sizeof others[0] && !other; k++)
-		if (is_given(options, others[k]))
+		if (gz_view_option_given(options, others[k]))
 			other = others[k];
 	if (!other)
 		return GZ_OK;
@@ -210,19 +210,12 @@ static enum gz_result check_replay(const struct gz_view_options *options, const 
 	return GZ_ERR_INVAL;
 }
 
-/* A mesh that is written needs its isovalue. */
+/* Whether a mesh that is written needs an isovalue depends on the scene: gz_view_write_mesh(). */
 static enum gz_result check_mesh(const struct gz_view_options *options, const struct gz_log *log)
 {
-	const bool value = is_given(options, "isovalue"), mesh = options->write_mesh[0];
-	if (mesh && options->write_volume[0])
-		gz_err(log,
-		       "--write-mesh: --write-volume cannot be combined with it; remove one of "
-		       "them");
-	else if (mesh && !value)
-		gz_err(log, "--write-mesh: --isovalue is missing; give the data value where the "
-			    "surface lies");
-	else
+	if (!options->write_mesh[0] || !options->write_volume[0])
 		return GZ_OK;
+	gz_err(log, "--write-mesh: --write-volume cannot be combined with it; remove one of them");
 	return GZ_ERR_INVAL;
 }
 
@@ -264,29 +257,29 @@ static bool any_scene_key(const struct gz_view_options *options)
 static enum gz_result check_experiment(const struct gz_view_options *options,
 				       const struct gz_log *log)
 {
-	const char *other = options->target.targets[0]      ? "--targets"
-			    : options->scene[0]             ? "a scene"
-			    : options->method >= 0          ? "--method"
-			    : options->technique >= 0       ? "--technique"
-			    : options->turn_deg != 0        ? "--turn"
-			    : options->time_point > 0       ? "--time-point"
-			    : options->play > 0             ? "--play"
-			    : options->resample             ? "--resample"
-			    : options->volume_resample >= 0 ? "--volume.resample"
-			    : options->write_volume[0]      ? "--write-volume"
-			    : options->write_mesh[0]        ? "--write-mesh"
-			    : is_given(options, "isovalue") ? "--isovalue"
-			    : options->list_series          ? "--list-series"
-			    : options->out[0]               ? "--out"
-			    : options->video[0]             ? "--video"
-			    : options->transfer_file[0]     ? "--transfer.file"
-			    : options->record[0]            ? "--record"
-			    : options->replay[0]            ? "--replay"
-			    : options->stats[0]             ? "--stats"
-			    : options->cross                ? "--cross"
-			    : options->letters              ? "--letters"
-			    : any_scene_key(options)        ? "a key of a scene"
-							    : NULL;
+	const char *other = options->target.targets[0]                  ? "--targets"
+			    : options->scene[0]                         ? "a scene"
+			    : options->method >= 0                      ? "--method"
+			    : options->technique >= 0                   ? "--technique"
+			    : options->turn_deg != 0                    ? "--turn"
+			    : options->time_point > 0                   ? "--time-point"
+			    : options->play > 0                         ? "--play"
+			    : options->resample                         ? "--resample"
+			    : options->volume_resample >= 0             ? "--volume.resample"
+			    : options->write_volume[0]                  ? "--write-volume"
+			    : options->write_mesh[0]                    ? "--write-mesh"
+			    : gz_view_option_given(options, "isovalue") ? "--isovalue"
+			    : options->list_series                      ? "--list-series"
+			    : options->out[0]                           ? "--out"
+			    : options->video[0]                         ? "--video"
+			    : options->transfer_file[0]                 ? "--transfer.file"
+			    : options->record[0]                        ? "--record"
+			    : options->replay[0]                        ? "--replay"
+			    : options->stats[0]                         ? "--stats"
+			    : options->cross                            ? "--cross"
+			    : options->letters                          ? "--letters"
+			    : any_scene_key(options)                    ? "a key of a scene"
+									: NULL;
 	if (!other)
 		return gz_sitting_options_check(&options->sitting, log);
 	gz_err(log,
@@ -600,7 +593,7 @@ static enum gz_result check_given_once(const struct gz_view_options *options,
 		{ "isovalue", "isosurface.isovalue" },
 	};
 	for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
-		if (is_given(options, pairs[i][0]) &&
+		if (gz_view_option_given(options, pairs[i][0]) &&
 		    scene_key_given(options, tables, pairs[i][1])) {
 			gz_err(log, "--%s: --%s sets the same; give one of them", pairs[i][0],
 			       pairs[i][1]);
@@ -768,7 +761,7 @@ enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 		settings->foveation.method = options->method;
 	if (options->technique >= 0)
 		settings->technique = options->technique;
-	if (is_given(options, "isovalue"))
+	if (gz_view_option_given(options, "isovalue"))
 		settings->rays.surface.isovalue = options->isovalue;
 	if (options->time_point > 0)
 		settings->time_point = options->time_point;

@@ -128,6 +128,9 @@ extern const size_t gz_view_option_count;
 enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz_log *log,
 				    struct gz_view_options *out_options);
 
+/** Whether the command line gave an option, by its key; false for unknown ones. */
+bool gz_view_option_given(const struct gz_view_options *options, const char *key);
+
 /** Print --help: usage, all options, and the scene keys that are accepted. */
 void gz_view_options_print_help(FILE *out);
 

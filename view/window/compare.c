@@ -121,7 +121,7 @@ static int shown_technique(const struct gz_window *window)
 static void start_standard_worker(struct gz_window *window)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
-	struct gz_object objects[GZ_SCENE_OBJECTS_MAX + 1];
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const size_t count =
 		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
 	const struct gz_reference_source source = {

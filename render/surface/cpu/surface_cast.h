@@ -23,6 +23,7 @@ struct gz_surface_mesh {
 	const float *positions, *normals; /**< three numbers for each vertex; mm */
 	const uint32_t *triangles;        /**< three vertices each */
 	uint32_t id;                      /**< of its object */
+	float colour[3];                  /**< of its object, or the settings' */
 };
 
 /** The surroundings: struct gz_environment for the kernels. Places and lengths are in mm. */
@@ -51,8 +52,7 @@ struct gz_surface_cast {
 	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
 	struct gz_cast_light light;            /**< without occlusion */
 	bool shadows;
-	float lift; /**< how far above a surface its shadow rays begin */
-	float colour[3];
+	float lift;          /**< how far above a surface its shadow rays begin */
 	uint32_t background; /**< as a pixel */
 	struct gz_surface_environment around;
 	int bounces;              /**< surfaces of glass that a ray meets at most; 0: no glass */

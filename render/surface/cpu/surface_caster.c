@@ -300,6 +300,17 @@ struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *ca
 	return size;
 }
 
+/* Meshes without a colour of their own have that of the settings. */
+static void colour_meshes(struct gz_surface_caster *caster, const struct gz_surface_look *look)
+{
+	for (size_t i = 0; i < caster->surface_count; i++) {
+		const float *own = caster->surfaces[i].object.colour;
+		for (int channel = 0; channel < 3; channel++)
+			caster->meshes[i].colour[channel] =
+				own ? own[channel] : (float)look->colour[channel];
+	}
+}
+
 static void fill_clip(const struct gz_surface_caster *caster, const struct gz_clip_box *clip,
 		      struct gz_surface_cast *cast)
 {
@@ -346,7 +357,6 @@ static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_fram
 	cast->background = UINT32_C(0xFF000000);
 	for (int i = 0; i < 3; i++) {
 		cast->light.towards[i] = (float)towards[i];
-		cast->colour[i] = (float)rays->surface.colour[i];
 		cast->background |= (uint32_t)(rays->background[i] * 255 + 0.5) << (8 * i);
 	}
 	cast->shadows = rays->surface.shadows;
@@ -533,6 +543,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	job.cast.tree = caster->tree.scene;
 	job.cast.meshes = caster->meshes;
 	job.cast.mesh_count = (unsigned)caster->surface_count;
+	colour_meshes(caster, &shot->rays->surface);
 	fill_clip(caster, &shot->rays->clip, &job.cast);
 	fill_rays(caster, &frame, &job.cast);
 	fill_look(shot->rays, &frame, &job.cast);

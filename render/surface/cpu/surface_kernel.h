@@ -77,6 +77,8 @@ SIMD vm light_lanes(const struct gz_surface_cast *cast, const struct gz_surface_
 	vi_store(hits->ids + first, vi_select(mask, vi_set((int32_t)mesh->id), id));
 	put_lanes(mask, shine.factor, packet->factor + first);
 	put_lanes(mask, shine.white, packet->white + first);
+	for (int channel = 0; channel < 3; channel++)
+		put_lanes(mask, vf_set(mesh->colour[channel]), packet->colour[channel] + first);
 	if (!cast->shadows)
 		return mask;
 	aim_shadows(cast, mesh, &at, &view, (struct lanes) { first, mask }, packet);
@@ -95,9 +97,19 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 	vi_store(hits->ids + first, vi_set(0));
 	vf_store(packet->factor + first, vf_set(0));
 	vf_store(packet->white + first, vf_set(0));
-	for (unsigned i = 0; i < cast->mesh_count; i++) {
+	for (int channel = 0; channel < 3; channel++)
+		vf_store(packet->colour[channel] + first, vf_set(0));
+	/* Each mesh once that some lane has met: there may be hundreds of others. */
+	vm left = met;
+	unsigned last = cast->mesh_count;
+	for (int lane = 0; lane < SIMD_LANES; lane++) {
+		const unsigned i = packet->hit.hit.geomID[first + lane];
+		if (i == last || i >= cast->mesh_count)
+			continue;
+		last = i;
 		const vi other = vi_add(number, vi_set(-(int32_t)i));
-		const vm mask = vm_but(met, vi_nonzero(other));
+		const vm mask = vm_but(left, vi_nonzero(other));
+		left = vm_but(left, mask);
 		if (vm_any(mask))
 			lit = vm_or(lit,
 				    light_lanes(cast, &cast->meshes[i], first, mask, packet, hits));
@@ -142,7 +154,8 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 	const vf factor = vf_load(packet->factor + first), white = vf_load(packet->white + first);
 	vi pixel = vi_set((int32_t)0xFF000000);
 	for (int channel = 0; channel < 3; channel++) {
-		const vi byte = to_byte(vf_fma(vf_set(cast->colour[channel]), factor, white));
+		const vf colour = vf_load(packet->colour[channel] + first);
+		const vi byte = to_byte(vf_fma(colour, factor, white));
 		pixel = vi_or(pixel, channel == 0   ? byte
 				     : channel == 1 ? vi_shift_left(byte, 8)
 						    : vi_shift_left(byte, 16));

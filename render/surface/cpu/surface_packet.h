@@ -18,6 +18,7 @@ struct packet {
 	alignas(64) int valid[GZ_SURFACE_RAYS]; /* -1: cast this ray */
 	alignas(64) float factor[GZ_SURFACE_RAYS];
 	float white[GZ_SURFACE_RAYS];
+	alignas(64) float colour[3][GZ_SURFACE_RAYS]; /* of what each ray has met */
 };
 
 SIMD void store_mask(vm mask, int *out)

@@ -1,5 +1,6 @@
 #include "render/surface/cpu/surface_tree.h"
 
+#include <stdint.h>
 #include <stdio.h>
 
 #define GZ_LOG_MODULE "isosurface"
@@ -35,6 +36,30 @@ static void drop_scene(struct gz_surface_tree *tree)
 	tree->scene = NULL;
 }
 
+/* Members of Embree's rays and hits of any number of lanes, as the inline functions of rtcore_ray.h
+ * count them, which are for C++ alone: each has a word for every lane. */
+enum { RAY_DIRECTION = 4, HIT_NORMAL = 0, HIT_TRIANGLE = 5 };
+
+/* Refuse triangles that a neighbour has, too, where they are met from behind: the neighbour's lies
+ * at the same place, and which of both a ray meets would be left to chance. Embree calls this for
+ * what it has found in a mesh with shared triangles. */
+static void refuse_shared_from_behind(const struct RTCFilterFunctionNArguments *arguments)
+{
+	const uint32_t first_shared = (uint32_t)(uintptr_t)arguments->geometryUserPtr;
+	const float *directions = (const float *)arguments->ray;
+	const float *normals = (const float *)arguments->hit;
+	const uint32_t *triangles = (const uint32_t *)arguments->hit;
+	const unsigned lanes = arguments->N;
+	for (unsigned i = 0; i < lanes; i++) {
+		float along = 0;
+		for (unsigned axis = 0; axis < 3; axis++)
+			along += directions[(RAY_DIRECTION + axis) * lanes + i] *
+				 normals[(HIT_NORMAL + axis) * lanes + i];
+		if (along > 0 && triangles[HIT_TRIANGLE * lanes + i] >= first_shared)
+			arguments->valid[i] = 0;
+	}
+}
+
 /* The arrays of a mesh have the padding that Embree asks for. */
 static void attach_mesh(struct gz_surface_tree *tree, const struct gz_mesh *mesh, unsigned number)
 {
@@ -47,6 +72,11 @@ static void attach_mesh(struct gz_surface_tree *tree, const struct gz_mesh *mesh
 	rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
 				   mesh->triangles, 0, sizeof mesh->triangles[0],
 				   mesh->triangle_count);
+	if (mesh->shared_count > 0) {
+		const size_t first_shared = mesh->triangle_count - mesh->shared_count;
+		rtcSetGeometryUserData(geometry, (void *)(uintptr_t)first_shared);
+		rtcSetGeometryIntersectFilterFunction(geometry, refuse_shared_from_behind);
+	}
 	rtcCommitGeometry(geometry);
 	rtcAttachGeometryByID(tree->scene, geometry, number);
 	rtcReleaseGeometry(geometry);

@@ -1,0 +1,103 @@
+/**
+ * @file
+ * The surfaces of labels: one closed mesh for each label of a volume, which neighbours share
+ * without gaps.
+ *
+ * Surface nets (Gibson, "Constrained elastic surface nets: generating smooth surfaces from binary
+ * segmented data", MICCAI 1998): each corner of voxels at which labels meet has one vertex, and
+ * each face between two voxels of different labels has two triangles. Both labels have these
+ * triangles, with opposite orientation, and all vertices are shared, so whatever moves them leaves
+ * no gap. What lies outside of the volume is no label, so every surface is closed.
+ *
+ * A vertex begins at the mean of the middles of those edges between the eight voxel centres round
+ * it whose ends differ. Then it is smoothed as Taubin does ("A signal processing approach to fair
+ * surface design", SIGGRAPH 1995): steps of GZ_LABEL_SHRINK and GZ_LABEL_SWELL of the way to the
+ * mean of its neighbours along edges in turn, which flatten stairs and keep volumes. It never
+ * leaves the cube of a voxel's size round its corner, so that no surface is farther than half a
+ * voxel, along each axis, from where the labels change, and thin things stay. On the sides of the
+ * volume's box vertices move within them.
+ *
+ * Where voxels of one label touch along an edge or at a corner only, its surface touches itself
+ * there. The same meshes, bits and order, for any number of threads.
+ */
+#ifndef GZ_RENDER_MESH_LABEL_SURFACES_H
+#define GZ_RENDER_MESH_LABEL_SURFACES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/option.h"
+#include "base/result.h"
+#include "base/workers.h"
+#include "render/data/volume.h"
+#include "render/mesh/label_index.h"
+#include "render/mesh/mesh.h"
+
+/** Taubin's two factors: his example, whose pass band ends at 1 / .5 - 1 / .53 = .11. */
+#define GZ_LABEL_SHRINK 0.5F
+#define GZ_LABEL_SWELL  (-0.53F)
+
+/** Most pairs of smoothing steps. Chosen: up to these a ball of 18 voxels keeps its volume within
+ * half a hundredth. */
+#define GZ_LABEL_SMOOTHING_MAX 60
+
+/** How surfaces of labels are made. */
+struct gz_label_look {
+	int smoothing; /**< pairs of smoothing steps; 0 = stairs with blunt edges */
+};
+
+/** Table over struct gz_label_look: "labels.…". */
+extern const struct gz_option gz_label_options[];
+extern const size_t gz_label_option_count;
+
+/** The surface of one label. */
+struct gz_label_surface {
+	int32_t number;  /**< of the label, as in the volume */
+	uint64_t voxels; /**< that it has */
+	float colour[3]; /**< gz_label_colour() */
+	/** Triangles that face no label come first; the others are its shared ones. */
+	struct gz_mesh mesh;
+};
+
+/** All labels of a volume. Zero-initialised is empty. */
+struct gz_label_surfaces {
+	size_t count;
+	struct gz_label_surface *items; /**< by rising numbers */
+};
+
+/** What surfaces of labels are made of. All pointers are borrowed. */
+struct gz_label_request {
+	const struct gz_volume *volume;
+	const char *name; /**< the volume's in messages */
+	int smoothing;    /**< as in struct gz_label_look */
+};
+
+/**
+ * Make the surfaces of all labels but 0.
+ *
+ * @param workers  share the work; NULL for the calling thread alone
+ * @param[out] out_surfaces  written on GZ_OK; the caller frees it with gz_label_surfaces_free()
+ * @retval GZ_ERR_FULL    more than GZ_MESH_COUNT_MAX vertices, or triangles of a label; logged
+ * @retval GZ_ERR_NO_MEM  logged
+ * @return otherwise the failures of gz_label_index_make(); logged
+ *
+ * Memory besides the meshes: 2 bytes for each voxel, 60 for each vertex and 4 for each thread and
+ * vertex, 28 for each face between labels.
+ */
+enum gz_result gz_label_surfaces_make(const struct gz_label_request *request,
+				      struct gz_workers *workers, const struct gz_log *log,
+				      struct gz_label_surfaces *out_surfaces);
+
+/**
+ * The colour of a label, the same in every volume: hues a golden section of the circle apart, in
+ * turn bright, dark and pale, so that labels of near numbers are told apart.
+ *
+ * @param[out] out_rgb  0.15 to 1 each
+ */
+void gz_label_colour(int32_t number, float out_rgb[3]);
+
+/** Free what it holds and zero it. */
+void gz_label_surfaces_free(struct gz_label_surfaces *surfaces);
+
+#endif

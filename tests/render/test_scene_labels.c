@@ -1,0 +1,209 @@
+/* Scenes that show labels, each with a surface and a colour of its own. */
+#include "suite.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/captured_log.h"
+#include "render/frame/picture_maker.h"
+#include "render/scene/scene.h"
+#include "volume_files.h"
+
+/* Two blocks side by side, 12 x 8 x 8 mm together: label 5 on the left and 9 on the right. */
+static const char head[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 6 6\nencoding: raw\n"
+			   "spacings: 2 2 2\n\n";
+
+#define BLOCKS "[object b]\nlabels = l.nrrd\ntechnique = isosurface\n"
+
+/* What is lit by ambient light alone has its colour. */
+#define EVEN_LIGHT "[light]\nambient = 1\ndiffuse = 0\nspecular = 0\n"
+
+static const char *write_scene(const char *text)
+{
+	uint8_t voxels[8 * 6 * 6] = { 0 };
+	for (int z = 1; z < 5; z++)
+		for (int y = 1; y < 5; y++)
+			for (int x = 1; x < 7; x++)
+				voxels[(z * 6 + y) * 8 + x] = x < 4 ? 5 : 9;
+	files_write_text("l.nrrd", head, voxels, sizeof voxels);
+	return files_write("l.scene", text, strlen(text));
+}
+
+static struct gz_scene loaded(const char *text)
+{
+	struct gz_scene scene = { 0 };
+	struct captured_log log;
+	captured_log_init(&log, "*:warn");
+	if (gz_scene_load(write_scene(text), NULL, &log.log, &scene) != GZ_OK)
+		fail_msg("%s: %s", text, log.last);
+	return scene;
+}
+
+static void each_label_is_an_object_with_a_colour(void **state)
+{
+	(void)state;
+	struct gz_scene scene = loaded(BLOCKS "[labels]\nsmoothing = 0\n");
+	struct gz_object objects[4];
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 4), 2);
+	assert_int_equal(objects[0].id, gz_scene_label_id(0, 0));
+	assert_int_equal(objects[1].id, gz_scene_label_id(0, 1));
+	assert_int_equal(objects[1].id & 255, 2);
+	for (size_t i = 0; i < 2; i++) {
+		float colour[3];
+		gz_label_colour(i == 0 ? 5 : 9, colour);
+		assert_memory_equal(objects[i].colour, colour, sizeof colour);
+		assert_ptr_equal(objects[i].mesh, &scene.labels[0].items[i].mesh);
+		assert_int_equal(scene.labels[0].items[i].voxels, 48);
+		/* 4 x 4 faces between both */
+		assert_int_equal(objects[i].mesh->shared_count, 32);
+	}
+	/* The box of both is the world. */
+	assert_float_equal(scene.volume.dims[0] * scene.volume.spacing[0], 12, 0.3);
+	assert_float_equal(scene.volume.dims[1] * scene.volume.spacing[1], 8, 0.3);
+	gz_scene_free(&scene);
+	assert_null(scene.labels);
+}
+
+static void hidden_labels_and_those_beside_a_volume_are_listed_right(void **state)
+{
+	(void)state;
+	struct gz_scene scene = loaded("[volume]\nprocedural = shells\ndims = 16 16 16\n" BLOCKS
+				       "[object c]\nlabels = l.nrrd\ntechnique = isosurface\n"
+				       "visible = no\n");
+	struct gz_object objects[8];
+	assert_int_equal(scene.volume.dims[0], 16);
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 8), 3);
+	assert_int_equal(objects[0].id, 1);
+	assert_null(objects[0].colour);
+	assert_int_equal(objects[2].id, gz_scene_label_id(0, 1));
+	gz_scene_free(&scene);
+}
+
+/* A picture of the scene by rays at surfaces; false without Embree. */
+enum { PICTURE_PX = 48 };
+
+static bool draw(const struct gz_scene *scene, struct gz_image *image)
+{
+	const struct gz_picture_maker_params params = { .backend = "cpu" };
+	const struct gz_foveation full = gz_foveation_full();
+	const struct gz_display display = gz_display_default(PICTURE_PX, PICTURE_PX);
+	const struct gz_picture_request request = {
+		.camera = &scene->settings.camera,
+		.settings = &scene->settings.rays,
+		.foveation = &full,
+		.display = &display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = PICTURE_PX,
+		.height = PICTURE_PX,
+		.image = image,
+	};
+	struct gz_picture_maker *maker = NULL;
+	struct gz_image *made;
+	struct gz_object objects[4];
+	const size_t count = gz_scene_list_objects(scene, objects, 4);
+	assert_int_equal(gz_picture_maker_create(&params, NULL, &maker), GZ_OK);
+	const bool drawn = gz_picture_maker_show(maker, objects, count) == GZ_OK;
+	if (drawn)
+		assert_int_equal(gz_picture_make(maker, &request, &made, NULL), GZ_OK);
+	gz_picture_maker_destroy(&maker);
+	return drawn;
+}
+
+static bool has_colour(const struct gz_image *image, int x, int y, int32_t label)
+{
+	const uint8_t *pixel = image->pixels + 4 * (y * PICTURE_PX + x);
+	float colour[3];
+	gz_label_colour(label, colour);
+	for (int i = 0; i < 3; i++)
+		if (abs(pixel[i] - (int)(colour[i] * 255 + 0.5F)) > 1)
+			return false;
+	return true;
+}
+
+static void labels_are_drawn_in_their_colours(void **state)
+{
+	(void)state;
+	struct gz_scene scene = loaded(BLOCKS EVEN_LIGHT "[camera]\neye = 0 -2.5 0\n");
+	struct gz_image image = { 0 };
+	if (draw(&scene, &image)) {
+		for (int y = PICTURE_PX / 2 - 3; y < PICTURE_PX / 2 + 3; y++)
+			for (int x = 1; x < 5; x++) {
+				assert_true(has_colour(&image, PICTURE_PX / 2 - 1 - x, y, 5));
+				assert_true(has_colour(&image, PICTURE_PX / 2 + x, y, 9));
+			}
+	}
+	gz_image_free(&image);
+	gz_scene_free(&scene);
+}
+
+/* Both labels have the face between them. Seen from within one it is the other. */
+static void face_between_neighbours_has_the_colour_of_the_far_one(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text;
+		int32_t wanted;
+	} views[] = {
+		{ BLOCKS EVEN_LIGHT "[camera]\neye = -2.5 0.1 0.2\n[clip]\nleast = 0.25 0 0\n", 9 },
+		{ BLOCKS EVEN_LIGHT "[camera]\neye = 2.5 0.1 0.2\n[clip]\ngreatest = 0.75 1 1\n",
+		  5 },
+		/* An outer wall is seen from within. */
+		{ BLOCKS EVEN_LIGHT "[camera]\neye = 2.5 0.1 0.2\n[clip]\ngreatest = 0.25 1 1\n",
+		  5 },
+	};
+	for (size_t i = 0; i < sizeof views / sizeof views[0]; i++) {
+		struct gz_scene scene = loaded(views[i].text);
+		struct gz_image image = { 0 };
+		if (draw(&scene, &image))
+			for (int y = PICTURE_PX / 2 - 4; y < PICTURE_PX / 2 + 4; y++)
+				for (int x = PICTURE_PX / 2 - 4; x < PICTURE_PX / 2 + 4; x++)
+					if (!has_colour(&image, x, y, views[i].wanted))
+						fail_msg("view %zu: pixel %d, %d is not label %d",
+							 i, x, y, views[i].wanted);
+		gz_image_free(&image);
+		gz_scene_free(&scene);
+	}
+}
+
+static void check_refusal(const char *scene_text, const char *said)
+{
+	struct gz_scene scene;
+	struct captured_log log;
+	captured_log_init(&log, "*:warn");
+	const char *path = write_scene(scene_text);
+	if (gz_scene_load(path, NULL, &log.log, &scene) == GZ_OK)
+		fail_msg("%s is shown", scene_text);
+	if (!strstr(log.last, said))
+		fail_msg("%s: without \"%s\": %s", scene_text, said, log.last);
+}
+
+static void volumes_that_are_no_labels_are_refused_by_name(void **state)
+{
+	(void)state;
+	const float values[2] = { 1, 2.5F };
+	files_write_text("f.nrrd",
+			 "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n"
+			 "endian: little\n\n",
+			 values, sizeof values);
+	check_refusal("[object a]\nlabels = f.nrrd\ntechnique = isosurface\n",
+		      "it has the value 2.5");
+	const uint8_t nothing[2] = { 0, 0 };
+	files_write_text("n.nrrd",
+			 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n\n",
+			 nothing, sizeof nothing);
+	check_refusal("[object a]\nlabels = n.nrrd\ntechnique = isosurface\n", "have no extent");
+	check_refusal("[object a]\nlabels = none.nrrd\ntechnique = isosurface\n", "none.nrrd");
+}
+
+TEST_SUITE(scene_labels)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(each_label_is_an_object_with_a_colour),
+		cmocka_unit_test(hidden_labels_and_those_beside_a_volume_are_listed_right),
+		cmocka_unit_test(labels_are_drawn_in_their_colours),
+		cmocka_unit_test(face_between_neighbours_has_the_colour_of_the_far_one),
+		cmocka_unit_test(volumes_that_are_no_labels_are_refused_by_name),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
