@@ -67,6 +67,40 @@ void gz_light_direction(const struct gz_light *light, const struct gz_ray_frame 
 	(void)gz_normalise3(out_direction);
 }
 
+void gz_light_seen(const struct gz_light *light, const struct gz_ray_frame *rays,
+		   double out_seen[3])
+{
+	double axes[3][3], direction[3];
+	camera_axes(rays, axes);
+	gz_light_direction(light, rays, direction);
+	for (int i = 0; i < 3; i++)
+		out_seen[i] = gz_dot3(direction, axes[i]);
+}
+
+/* Steps in which a turned light's direction is stored: short numbers in scene files. */
+static const double DIRECTION_STEPS = 1e5;
+
+void gz_light_turn(struct gz_light *light, const struct gz_ray_frame *rays, double right_deg,
+		   double down_deg)
+{
+	double axes[3][3], seen[3];
+	const double a = right_deg * (M_PI / 180), b = down_deg * (M_PI / 180);
+	camera_axes(rays, axes);
+	gz_light_seen(light, rays, seen);
+	/* Around the axis up, then around the axis right. */
+	const double x = cos(a) * seen[0] + sin(a) * seen[2];
+	const double z = cos(a) * seen[2] - sin(a) * seen[0];
+	const double turned[3] = { x, cos(b) * seen[1] - sin(b) * z,
+				   cos(b) * z + sin(b) * seen[1] };
+	for (int i = 0; i < 3; i++) {
+		double value = turned[i];
+		if (light->frame == GZ_LIGHT_WORLD)
+			value = turned[0] * axes[0][i] + turned[1] * axes[1][i] +
+				turned[2] * axes[2][i];
+		light->direction[i] = round(value * DIRECTION_STEPS) / DIRECTION_STEPS;
+	}
+}
+
 void gz_light_gradient_scale(const struct gz_volume *volume, const struct gz_transfer_table *table,
 			     double out_scale[3])
 {

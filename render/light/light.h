@@ -93,6 +93,19 @@ bool gz_light_valid(const struct gz_light *light);
 void gz_light_direction(const struct gz_light *light, const struct gz_ray_frame *rays,
 			double out_direction[3]);
 
+/** The direction towards the light as the viewer sees it: right, up, towards the viewer; length 1.
+ */
+void gz_light_seen(const struct gz_light *light, const struct gz_ray_frame *rays,
+		   double out_seen[3]);
+
+/**
+ * Turn the light around the middle of the picture, in its own frame. A light on the viewer's side
+ * moves right by @p right_deg and down by @p down_deg; one behind moves against that, as a ball
+ * would that is turned in front. The direction is then of length 1, in steps of 1e-5.
+ */
+void gz_light_turn(struct gz_light *light, const struct gz_ray_frame *rays, double right_deg,
+		   double down_deg);
+
 /** The factor for each axis that turns the difference between the stored values one voxel to either
  *  side into the gradient of struct gz_light. */
 void gz_light_gradient_scale(const struct gz_volume *volume, const struct gz_transfer_table *table,

@@ -510,10 +510,50 @@ static void light_without_direction_or_beyond_its_range_is_refused(void **state)
 	assert_false(gz_ray_params_valid(&rays));
 }
 
+/* Check where the viewer sees the light. */
+static void assert_light_seen(const struct gz_light *light, const struct gz_ray_frame *rays,
+			      const double expected[3])
+{
+	double seen[3];
+	gz_light_seen(light, rays, seen);
+	for (int i = 0; i < 3; i++)
+		if (fabs(seen[i] - expected[i]) > 2e-5)
+			fail_msg("seen at %g %g %g, not %g %g %g", seen[0], seen[1], seen[2],
+				 expected[0], expected[1], expected[2]);
+}
+
+static void light_turns_as_the_viewer_sees_it_in_both_frames(void **state)
+{
+	(void)state;
+	static const double front[3] = { 0, 0, 1 }, right[3] = { 1, 0, 0 }, down[3] = { 0, -1, 0 },
+			    behind[3] = { 0, 0, -1 };
+	for (int frame = GZ_LIGHT_CAMERA; frame <= GZ_LIGHT_WORLD; frame++) {
+		struct small_scene scene = lit_waves(8, 8, 8, GZ_VOXEL_U8);
+		struct gz_ray_frame rays;
+		struct gz_light *light = &scene.rays.light;
+		look_from(&scene, 2, -3, 1);
+		assert_int_equal(gz_camera_rays(&scene.camera, 40, 30, &rays), GZ_OK);
+		/* Towards the eye. */
+		light_from(&scene, frame, frame == GZ_LIGHT_WORLD ? 2 : 0,
+			   frame == GZ_LIGHT_WORLD ? -3 : 0, 1);
+		assert_light_seen(light, &rays, front);
+		gz_light_turn(light, &rays, 90, 0);
+		assert_light_seen(light, &rays, right);
+		gz_light_turn(light, &rays, -90, 0);
+		gz_light_turn(light, &rays, 0, 90);
+		assert_light_seen(light, &rays, down);
+		gz_light_turn(light, &rays, 0, 90);
+		assert_light_seen(light, &rays, behind);
+		assert_int_equal(light->frame, frame);
+		small_scene_free(&scene);
+	}
+}
+
 TEST_SUITE(shading)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(shading_of_every_voxel_type_equals_the_oracle),
+		cmocka_unit_test(light_turns_as_the_viewer_sees_it_in_both_frames),
 		cmocka_unit_test(shading_by_nearest_voxel_equals_the_oracle_but_on_voxel_faces),
 		cmocka_unit_test(shading_by_a_light_of_the_world_equals_the_oracle),
 		cmocka_unit_test(shading_by_light_from_behind_and_from_aside_equals_the_oracle),

@@ -169,6 +169,27 @@ class PictureWindow(WindowCase):
             self.until(lambda p: self.below_line(p) == self.below_line(first), "back")
             self.move(MIDDLE, HEIGHT // 2)
 
+    def test_ctrl_drag_moves_the_light_and_w_brings_it_back(self):
+        self.start(*STILL, "--method", "standard", "--render.shading", "gradient")
+        self.move(MIDDLE, HEIGHT // 2)
+        first = self.rest()
+        self.tool("keydown", "ctrl")
+        self.tool("mousedown", 1)
+        self.move(MIDDLE + 60, HEIGHT // 2 + 30)
+        self.until(lambda p: self.lamps(p) > 40, "the lamp")
+        self.tool("mouseup", 1)
+        self.tool("keyup", "ctrl")
+        moved = self.until(lambda p: self.lamps(p) == 0, "no lamp")
+        self.assertNotEqual(self.below_line(moved), self.below_line(first))
+        self.tool("key", "w")
+        self.until(lambda p: self.below_line(p) == self.below_line(first), "back")
+
+    def lamps(self, picture):
+        """Pixels of the lamp that shows where the light is."""
+        return sum(picture.at(x, y) == (255, 220, 90)
+                   for x in range(MIDDLE - 80, MIDDLE + 80)
+                   for y in range(HEIGHT // 2 - 80, HEIGHT // 2 + 80))
+
     def test_saved_view_shows_the_same_picture_again(self):
         self.start(*STILL, "--method", "standard")
         first = self.rest()

@@ -123,6 +123,7 @@ struct gz_window_part {
 	ROW(compare)       /* the standard picture beside the method's */ \
 	ROW(overlay)       /* the tint that shows the plan */ \
 	ROW(trail)         /* the last second of the gaze */ \
+	ROW(light)         /* moves the light; before the camera, which takes all other drags */ \
 	ROW(camera)        /* moves the camera */ \
 	ROW(frame_times)   /* plots what frames cost */ \
 	ROW(gaze_panel)    /* the panel of the gaze */ \
