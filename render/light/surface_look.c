@@ -1,5 +1,6 @@
 #include "render/light/surface_look.h"
 
+static const char *const source_names[] = { "triangles", "voxels", NULL };
 static const char *const material_names[] = { "matte", "glass", NULL };
 
 #define AT(field) offsetof(struct gz_surface_look, field)
@@ -7,6 +8,9 @@ static const char *const material_names[] = { "matte", "glass", NULL };
 const struct gz_option gz_surface_look_options[] = {
 	{ "isosurface.isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -GZ_ISOVALUE_MAX, GZ_ISOVALUE_MAX,
 	  .preset = "0", .help = "data value of a volume's surface, such as Hounsfield units" },
+	{ "isosurface.source", GZ_OPTION_CHOICE, AT(source), .choices = source_names,
+	  .preset = "triangles",
+	  .help = "where rays meet a volume's surface: triangles, or voxels: no mesh is made" },
 	{ "isosurface.colour", GZ_OPTION_DOUBLE, AT(colour), 0, 1, .count = 3,
 	  .preset = "0.9 0.85 0.75", .help = "red, green and blue of surfaces" },
 	{ "isosurface.material", GZ_OPTION_CHOICE, AT(material), .choices = material_names,

@@ -13,6 +13,12 @@
 /** Greatest magnitude of an isovalue. Chosen: data in single precision lie below 3.5e38. */
 #define GZ_ISOVALUE_MAX 1e30
 
+/** How rays meet the surface of a volume. */
+enum gz_surface_source {
+	GZ_SURFACE_TRIANGLES, /**< a mesh, made when the isovalue changes */
+	GZ_SURFACE_VOXELS,    /**< each ray finds the surface in the data */
+};
+
 /** What surfaces are made of. */
 enum gz_material {
 	GZ_MATERIAL_MATTE, /**< opaque, lit as struct gz_light says */
@@ -22,6 +28,7 @@ enum gz_material {
 /** The surface of a volume, and how surfaces look. The light is that of struct gz_light. */
 struct gz_surface_look {
 	double isovalue;  /**< data value of a volume's surface: slope and intercept applied */
+	int source;       /**< enum gz_surface_source */
 	double colour[3]; /**< [0, 1] each; of all surfaces. Of glass: what is left of white light
 			     after one world unit */
 	int material;     /**< enum gz_material */

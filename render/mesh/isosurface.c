@@ -161,9 +161,9 @@ static enum gz_result extract_in_memory(struct gz_iso_job *job, struct gz_worker
 }
 
 /* Why there can be no surface; NULL if there may be one. */
-static void warn_of_emptiness(const struct gz_isosurface_request *request, const struct gz_log *log)
+void gz_isosurface_warn_of_emptiness(const struct gz_volume *volume, double isovalue,
+				     const struct gz_log *log)
 {
-	const struct gz_volume *volume = request->volume;
 	const double a = volume->slope * volume->stored_min + volume->intercept;
 	const double b = volume->slope * volume->stored_max + volume->intercept;
 	if (volume->dims[0] < 2 || volume->dims[1] < 2 || volume->dims[2] < 2)
@@ -175,7 +175,7 @@ static void warn_of_emptiness(const struct gz_isosurface_request *request, const
 		gz_warn(log,
 			"the surface is empty: the isovalue %g does not separate any voxels; they "
 			"range from %g to %g",
-			request->isovalue, fmin(a, b), fmax(a, b));
+			isovalue, fmin(a, b), fmax(a, b));
 }
 
 /* Whether the range of the voxels rules a surface out. A range that is not a number rules nothing
@@ -214,7 +214,7 @@ enum gz_result gz_isosurface_make(const struct gz_isosurface_request *request,
 			return result;
 	}
 	if (mesh.triangle_count == 0)
-		warn_of_emptiness(request, log);
+		gz_isosurface_warn_of_emptiness(request->volume, request->isovalue, log);
 	*out_mesh = mesh;
 	return GZ_OK;
 }

@@ -68,4 +68,8 @@ enum gz_result gz_isosurface_make(const struct gz_isosurface_request *request,
 				  struct gz_workers *workers, const struct gz_log *log,
 				  struct gz_mesh *out_mesh);
 
+/** Log a warning that a volume has no surface at an isovalue, and which values it has. */
+void gz_isosurface_warn_of_emptiness(const struct gz_volume *volume, double isovalue,
+				     const struct gz_log *log);
+
 #endif

@@ -107,7 +107,7 @@ static void shadows_of_segments_colours_and_nearest_voxels_equal_the_oracle(void
 static void shadows_of_bodies_far_apart_equal_the_oracle(void **state)
 {
 	(void)state;
-	enum { EDGE = 60, BODY = 9 };
+	enum { EDGE = 44, BODY = 9 };
 	struct small_scene scene = shadowed_waves(EDGE, EDGE, EDGE, GZ_VOXEL_U8);
 	uint8_t *voxels = scene.volume.voxels;
 	for (int i = 0; i < EDGE * EDGE * EDGE; i++) {
@@ -124,7 +124,7 @@ static void shadows_of_bodies_far_apart_equal_the_oracle(void **state)
 	scene.rays.light.frame = GZ_LIGHT_WORLD;
 	memcpy(scene.rays.light.direction, (double[3]) { 1, 1, 1 }, 3 * sizeof(double));
 	scene.rays.light.ambient = 0.1;
-	oracle_check(&scene, 31, 27);
+	oracle_check(&scene, 23, 21);
 }
 
 static void grid_of_a_large_volume_has_longer_cells(void **state)

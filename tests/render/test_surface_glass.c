@@ -172,13 +172,14 @@ static void place_of(int x, int y, const struct glass_stage *stage, double out[2
 	out[1] = (0.5 * HEIGHT - y - 0.5) * pixel;
 }
 
-static void ball_by_snell(int bounces, const char *simd)
+static void ball_by_snell(enum gz_surface_source source, int bounces, const char *simd)
 {
 	const double radius = 20;
 	struct glass_stage stage;
 	double sum = 0;
 	int count = 0, apart = 0;
 	set_up_glass(field_ball, &stage);
+	stage.rays.surface.source = source;
 	stage.rays.surface.bounces = bounces;
 	draw_glass(&stage, 2, simd);
 	for (int y = 0; y < HEIGHT; y++)
@@ -207,23 +208,27 @@ static void ball_by_snell(int bounces, const char *simd)
 			count++;
 		}
 	if (count < 2000 || apart > count / 100 || sum / count > 0.6)
-		fail_msg("%s, %d bounces: mean %.2f grey levels, %d of %d pixels off by more than "
+		fail_msg("source %d, %s, %d bounces: mean %.2f grey levels, %d of %d pixels off by "
+			 "more than "
 			 "2",
-			 simd, bounces, sum / count, apart, count);
+			 source, simd, bounces, sum / count, apart, count);
 	take_down_glass(&stage);
 }
 
 static void ball_of_glass_bends_rays_by_snells_law(void **state)
 {
 	(void)state;
-	for (const char *const *set = small_scene_simd_sets(); *set; set++)
-		ball_by_snell(4, *set);
+	for (const char *const *set = small_scene_simd_sets(); *set; set++) {
+		ball_by_snell(GZ_SURFACE_TRIANGLES, 4, *set);
+		ball_by_snell(GZ_SURFACE_VOXELS, 4, *set);
+	}
 }
 
 static void ray_that_may_meet_no_more_sees_the_sky_ahead(void **state)
 {
 	(void)state;
-	ball_by_snell(1, "auto");
+	ball_by_snell(GZ_SURFACE_TRIANGLES, 1, "auto");
+	ball_by_snell(GZ_SURFACE_VOXELS, 1, "auto");
 }
 
 /* A block of 40 mm, its sides at x, y and z. */
@@ -236,13 +241,13 @@ static double field_block(const double place[3])
  * Seen at 45 degrees, the front of a block sends rays to its side beyond the critical angle. They
  * are reflected there, and leave through the back with x turned round.
  */
-static void block_of_glass_reflects_all_beyond_the_critical_angle(void **state)
+static void block_by_snell(enum gz_surface_source source)
 {
-	(void)state;
 	const double index = 1.5, a = M_PI / 4, b = asin(sin(a) / index), edge = 20, rim = 3;
 	struct glass_stage stage;
 	int count = 0;
 	set_up_glass(field_block, &stage);
+	stage.rays.surface.source = source;
 	/* looks along (1, 1, 0) */
 	memcpy(stage.camera.eye, (double[3]) { -1.5, -1.5, 0 }, 3 * sizeof(double));
 	draw_glass(&stage, 2, NULL);
@@ -281,6 +286,13 @@ static void block_of_glass_reflects_all_beyond_the_critical_angle(void **state)
 		}
 	assert_true(count > 100);
 	take_down_glass(&stage);
+}
+
+static void block_of_glass_reflects_all_beyond_the_critical_angle(void **state)
+{
+	(void)state;
+	block_by_snell(GZ_SURFACE_TRIANGLES);
+	block_by_snell(GZ_SURFACE_VOXELS);
 }
 
 /* The floor, or the sky, from a place in world units. */

@@ -343,15 +343,16 @@ static void relax_distances(const int dims[3], uint8_t *distance)
 	}
 }
 
-void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfer_table *table)
+static void put_shows(struct gz_macrocells *cells, size_t index, bool shows)
+{
+	cells->distance[index] = shows ? 0 : 255;
+	cells->reach[index] = shows ? 255 : 0;
+}
+
+/* After put_shows() for each cell. */
+static void find_distances(struct gz_macrocells *cells)
 {
 	const size_t count = cell_count(cells);
-	for (size_t i = 0; i < count; i++) {
-		const bool shows =
-			gz_transfer_table_shows(table, cells->least[i], cells->greatest[i]);
-		cells->distance[i] = shows ? 0 : 255;
-		cells->reach[i] = shows ? 255 : 0;
-	}
 	relax_distances(cells->dims, cells->distance);
 	relax_distances(cells->dims, cells->reach);
 	for (size_t i = 0; i < count; i++) {
@@ -359,6 +360,24 @@ void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfe
 		const int full = minimum(cells->reach[i], GZ_REACH_MAX);
 		cells->reach[i] = (uint8_t)(GZ_REACH_BORDER + empty - full);
 	}
+}
+
+void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfer_table *table)
+{
+	const size_t count = cell_count(cells);
+	for (size_t i = 0; i < count; i++)
+		put_shows(cells, i,
+			  gz_transfer_table_shows(table, cells->least[i], cells->greatest[i]));
+	find_distances(cells);
+}
+
+void gz_macrocells_classify_surface(struct gz_macrocells *cells, double value)
+{
+	const size_t count = cell_count(cells);
+	for (size_t i = 0; i < count; i++)
+		put_shows(cells, i,
+			  (double)cells->least[i] <= value && value <= (double)cells->greatest[i]);
+	find_distances(cells);
 }
 
 void gz_macrocells_free(struct gz_macrocells *cells)

@@ -54,6 +54,10 @@ enum gz_result gz_macrocells_of_coarser_bricks(const struct gz_brick_file *file,
 /** Find distance and reach for a transfer function. Reads the cells' values, not the voxels. */
 void gz_macrocells_classify(struct gz_macrocells *cells, const struct gz_transfer_table *table);
 
+/** Find distance and reach for an isosurface: something shows in the cells whose range holds a
+ *  stored value. */
+void gz_macrocells_classify_surface(struct gz_macrocells *cells, double value);
+
 /** Free and zero. */
 void gz_macrocells_free(struct gz_macrocells *cells);
 

@@ -10,6 +10,7 @@
 
 #include "render/light/environment.h"
 #include "render/plan/plan.h"
+#include "render/raycast/cpu/cast.h"
 #include "render/raycast/shared/lighting.h"
 #include "render/surface/cpu/embree.h"
 
@@ -24,6 +25,27 @@ struct gz_surface_mesh {
 	const uint32_t *triangles;        /**< three vertices each */
 	uint32_t id;                      /**< of its object */
 	float colour[3];                  /**< of its object, or the settings' */
+};
+
+/** Halvings of the part of a ray in which it crosses a field's isovalue. Chosen: that part is at
+ * most two voxels long, so places are found to 2^-17 of a voxel, as far as single precision goes.
+ */
+#define GZ_FIELD_BISECTIONS 18
+/** A ray goes at least so far at a time, finest voxel edges, or rounding could hold it on a face.
+ */
+#define GZ_FIELD_ONWARD (1.0F / 128)
+
+/** A volume whose surface is found without triangles. */
+struct gz_surface_field {
+	bool on;         /**< there is one */
+	unsigned number; /**< its number among the meshes, where it is an empty one */
+	/** What sample_trilinear() and look_up_cell() read: voxels, dims, last, stride, reach,
+	 *  cell_last and cell_stride. Cells are empty that the surface does not cross. */
+	struct gz_cast voxels;
+	enum gz_voxel_type type;
+	float value;            /**< the isovalue as it is stored */
+	float voxels_per_mm[3]; /**< along each axis */
+	float step_mm;          /**< the finest voxel edge */
 };
 
 /** The surroundings: struct gz_environment for the kernels. Places and lengths are in mm. */
@@ -45,6 +67,7 @@ struct gz_surface_cast {
 	RTCScene tree;
 	const struct gz_surface_mesh *meshes; /**< by the tree's numbers of geometries */
 	unsigned mesh_count;
+	struct gz_surface_field field;
 	/** The ray of pixel (x, y), as in struct gz_ray_frame. */
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];

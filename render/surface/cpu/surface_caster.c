@@ -12,6 +12,7 @@
 #include "render/mesh/isosurface.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cpu_raycaster.h"
+#include "render/raycast/shared/macrocells.h"
 #include "render/reconstruct/cpu/lattice.h"
 #include "render/reconstruct/cpu/reconstruct.h"
 #include "render/surface/cpu/surface_cast.h"
@@ -47,6 +48,15 @@ struct surface {
 	bool current;        /* it is made */
 };
 
+/* The volume whose surface rays find in its voxels. */
+struct field {
+	const struct gz_volume *volume; /* NULL: none */
+	uint64_t revision;              /* of its data */
+	struct gz_macrocells cells;
+	double isovalue; /* for which the cells are classified */
+	bool current;    /* they are */
+};
+
 struct gz_surface_caster {
 	const struct gz_log *log;
 	struct gz_workers *workers;
@@ -58,6 +68,8 @@ struct gz_surface_caster {
 	double world_mm; /* mm of a world unit */
 	struct gz_surface_tree tree;
 	bool tree_current;
+	int source; /* enum gz_surface_source: what the tree was made for */
+	struct field field;
 	struct gz_cube cube;          /* the surroundings' pictures, if they are wanted */
 	char cube_path[GZ_PATH_SIZE]; /* their folder */
 	struct gz_lattices lattices[PLANE_COUNT];
@@ -221,7 +233,8 @@ enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
 static enum gz_result make_surface(struct gz_surface_caster *caster, struct surface *surface,
 				   double isovalue)
 {
-	if (surface->object.mesh || (surface->current && surface->isovalue == isovalue))
+	if (surface->object.mesh || caster->source == GZ_SURFACE_VOXELS ||
+	    (surface->current && surface->isovalue == isovalue))
 		return GZ_OK;
 	const struct gz_isosurface_request request = {
 		.volume = surface->object.volume,
@@ -241,8 +254,10 @@ static enum gz_result make_surface(struct gz_surface_caster *caster, struct surf
 
 static enum gz_result list_mesh(struct gz_surface_caster *caster, size_t index)
 {
+	static const struct gz_mesh none = { 0 };
 	const struct surface *surface = &caster->surfaces[index];
-	const struct gz_mesh *mesh = surface->object.mesh ? surface->object.mesh : &surface->made;
+	const struct gz_mesh *made = caster->source == GZ_SURFACE_VOXELS ? &none : &surface->made;
+	const struct gz_mesh *mesh = surface->object.mesh ? surface->object.mesh : made;
 	if (mesh->vertex_count > ELEMENTS_MAX || mesh->triangle_count > ELEMENTS_MAX) {
 		gz_err(caster->log,
 		       "isosurface draws at most %zu vertices and triangles of an object, not %zu "
@@ -260,12 +275,84 @@ static enum gz_result list_mesh(struct gz_surface_caster *caster, size_t index)
 	return GZ_OK;
 }
 
-/* Make what the picture shows, meshes and their tree, and tell the time; 0: all was there. */
-static enum gz_result prepare_surfaces(struct gz_surface_caster *caster, double isovalue,
-				       double *out_ms)
+/* The first object that is a volume, by its number; surface_count if none is. All volumes are one.
+ */
+static size_t find_volume_surface(const struct gz_surface_caster *caster)
 {
-	enum gz_result result = GZ_OK;
+	size_t i = 0;
+	while (i < caster->surface_count && caster->surfaces[i].object.mesh)
+		i++;
+	return i;
+}
+
+/* An isovalue as the volume's voxels have it. */
+static double stored_isovalue(const struct gz_volume *volume, double isovalue)
+{
+	return (isovalue - volume->intercept) / volume->slope;
+}
+
+/* Find the range of the volume's cells. */
+static enum gz_result build_field(struct gz_surface_caster *caster, const struct gz_object *object)
+{
+	struct field *field = &caster->field;
+	if (field->volume == object->volume && field->revision == object->data_revision)
+		return GZ_OK;
+	field->volume = NULL;
+	field->current = false;
+	if (gz_volume_voxel_count(object->volume) > INT32_MAX) { /* gathers take 31 bits */
+		gz_err(caster->log, "the surface in more than 2^31 voxels cannot be found in them; "
+				    "set isosurface.source to triangles");
+		return GZ_ERR_UNSUPPORTED;
+	}
+	const enum gz_result result = gz_macrocells_build(object->volume, &field->cells);
+	if (result != GZ_OK) {
+		gz_err(caster->log, "no memory for the cells of the volume's surface");
+		return result;
+	}
+	field->volume = object->volume;
+	field->revision = object->data_revision;
+	return GZ_OK;
+}
+
+static bool shows_nowhere(const struct gz_macrocells *cells)
+{
+	const size_t count =
+		(size_t)cells->dims[0] * (size_t)cells->dims[1] * (size_t)cells->dims[2];
+	for (size_t i = 0; i < count; i++)
+		if (cells->distance[i] == 0)
+			return false;
+	return true;
+}
+
+/* Find the cells of the volume that its surface crosses. */
+static enum gz_result prepare_field(struct gz_surface_caster *caster, double isovalue)
+{
+	const size_t index = find_volume_surface(caster);
+	struct field *field = &caster->field;
+	if (index == caster->surface_count || caster->source != GZ_SURFACE_VOXELS)
+		return GZ_OK;
+	const enum gz_result result = build_field(caster, &caster->surfaces[index].object);
+	if (result != GZ_OK)
+		return result;
+	if (field->current && field->isovalue == isovalue)
+		return GZ_OK;
+	gz_macrocells_classify_surface(&field->cells, stored_isovalue(field->volume, isovalue));
+	if (shows_nowhere(&field->cells))
+		gz_isosurface_warn_of_emptiness(field->volume, isovalue, caster->log);
+	field->isovalue = isovalue;
+	field->current = true;
+	return GZ_OK;
+}
+
+/* Make what the picture shows, meshes and their tree, and tell the time; 0: all was there. */
+static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
+				       const struct gz_surface_look *look, double *out_ms)
+{
+	const double isovalue = look->isovalue;
 	*out_ms = 0;
+	caster->tree_current = caster->tree_current && caster->source == look->source;
+	caster->source = look->source;
+	enum gz_result result = prepare_field(caster, isovalue);
 	const int64_t start_ns = gz_clock_now_ns();
 	for (size_t i = 0; i < caster->surface_count && result == GZ_OK; i++)
 		result = make_surface(caster, &caster->surfaces[i], isovalue);
@@ -445,6 +532,49 @@ static void fill_surroundings(const struct gz_surface_caster *caster,
 	}
 }
 
+/* The voxels of a field, as sample_trilinear() reads them, and its cells, as look_up_cell() does.
+ */
+static void fill_field_voxels(const struct field *from, struct gz_cast *voxels)
+{
+	const struct gz_volume *volume = from->volume;
+	const struct gz_macrocells *cells = &from->cells;
+	const int32_t strides[3] = { 1, volume->dims[0], volume->dims[0] * volume->dims[1] };
+	const int32_t cell_strides[3] = { 1, cells->dims[0], cells->dims[0] * cells->dims[1] };
+	voxels->voxels = volume->voxels;
+	voxels->reach = cells->reach;
+	for (int axis = 0; axis < 3; axis++) {
+		const int dim = volume->dims[axis];
+		voxels->dims[axis] = (float)dim;
+		voxels->last[axis] = dim > 1 ? dim - 2 : 0;
+		/* one voxel along an axis has no neighbour */
+		voxels->stride[axis] = axis == 0 || dim > 1 ? strides[axis] : 0;
+		voxels->cell_last[axis] = (float)(cells->dims[axis] - 1);
+		voxels->cell_stride[axis] = cell_strides[axis];
+	}
+}
+
+static void fill_field(const struct gz_surface_caster *caster, struct gz_surface_cast *cast)
+{
+	const size_t index = find_volume_surface(caster);
+	struct gz_surface_field *field = &cast->field;
+	field->on = caster->source == GZ_SURFACE_VOXELS && index < caster->surface_count;
+	if (!field->on)
+		return;
+	const struct gz_volume *volume = caster->field.volume;
+	double half[3], finest = INFINITY;
+	gz_volume_half_extent(volume, half);
+	field->number = (unsigned)index;
+	field->type = volume->type;
+	field->value = (float)stored_isovalue(volume, caster->field.isovalue);
+	for (int axis = 0; axis < 3; axis++) {
+		const double edge = 2 * half[axis] * caster->world_mm / volume->dims[axis];
+		field->voxels_per_mm[axis] = (float)(1 / edge);
+		finest = fmin(finest, edge);
+	}
+	field->step_mm = (float)finest;
+	fill_field_voxels(&caster->field, &field->voxels);
+}
+
 static void cast_surface_part(void *user, size_t part, int worker)
 {
 	const struct surface_job *job = user;
@@ -534,7 +664,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 		result = prepare_planes(caster, plan, image, planes, job.words);
 	double prepare_ms = 0;
 	if (result == GZ_OK)
-		result = prepare_surfaces(caster, shot->rays->surface.isovalue, &prepare_ms);
+		result = prepare_surfaces(caster, &shot->rays->surface, &prepare_ms);
 	if (result == GZ_OK)
 		result = prepare_cube(caster, &shot->rays->environment, &prepare_ms);
 	if (result != GZ_OK)
@@ -544,6 +674,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	job.cast.meshes = caster->meshes;
 	job.cast.mesh_count = (unsigned)caster->surface_count;
 	colour_meshes(caster, &shot->rays->surface);
+	fill_field(caster, &job.cast);
 	fill_clip(caster, &shot->rays->clip, &job.cast);
 	fill_rays(caster, &frame, &job.cast);
 	fill_look(shot->rays, &frame, &job.cast);
@@ -579,6 +710,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 	gz_surface_tree_close(&self->tree);
 	free_surfaces(self);
 	gz_cube_free(&self->cube);
+	gz_macrocells_free(&self->field.cells);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);
 	free(self);

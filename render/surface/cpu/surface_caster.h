@@ -73,6 +73,8 @@ struct gz_surface_shot {
  * @param out_stats  may be NULL; its prepare_ms is the time for surfaces and tree
  * @retval GZ_ERR_INVAL   the settings or the camera are not valid, or nothing is shown
  * @retval GZ_ERR_FULL    the surface has too many triangles; logged
+ * @retval GZ_ERR_UNSUPPORTED  the volume has too many voxels for GZ_SURFACE_VOXELS; logged
+ * @retval GZ_ERR_NOT_FOUND, GZ_ERR_FORMAT  pictures of the surroundings: gz_cube_load(); logged
  * @retval GZ_ERR_NO_MEM  out of memory; logged
  */
 enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
@@ -80,7 +82,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 				      const struct gz_surface_planes *planes,
 				      struct gz_frame_stats *out_stats);
 
-/** How much the surfaces of the last picture take. */
+/** How much the triangles of the last picture take. */
 struct gz_surface_size {
 	size_t triangles;
 	size_t mesh_bytes; /**< of meshes that the caster has made */

@@ -20,6 +20,7 @@
 #define GZ_RENDER_SURFACE_CPU_SURFACE_GLASS_H
 
 #include "render/surface/cpu/surface_cast.h"
+#include "render/surface/cpu/surface_field.h"
 #include "render/surface/cpu/surface_packet.h"
 #include "render/surface/cpu/surface_surroundings.h"
 
@@ -29,21 +30,6 @@ struct glass {
 	alignas(64) float weight[3][GZ_SURFACE_RAYS]; /* of what is still to come */
 	alignas(64) int inside[GZ_SURFACE_RAYS];      /* -1: within glass */
 };
-
-/* The origins and directions of SIMD_LANES rays. */
-struct ways {
-	vf origin[3], direction[3];
-};
-
-SIMD struct ways load_ways(const struct RTCRay16 *ray, int first)
-{
-	return (struct ways) {
-		{ vf_load(ray->org_x + first), vf_load(ray->org_y + first),
-		  vf_load(ray->org_z + first) },
-		{ vf_load(ray->dir_x + first), vf_load(ray->dir_y + first),
-		  vf_load(ray->dir_z + first) },
-	};
-}
 
 /* Add a share of what the lanes of the mask see of the surroundings. */
 SIMD void gather_surroundings(const struct gz_surface_cast *cast, const vf origin[3],
@@ -102,15 +88,15 @@ SIMD void absorb(const struct gz_surface_cast *cast, vf distance, struct lanes l
 }
 
 /* Send on the lanes of the mask, all of which have met one mesh. */
-SIMD void bend_lanes(const struct gz_surface_cast *cast, const struct gz_surface_mesh *mesh,
-		     struct lanes lanes, struct packet *packet, struct glass *glass)
+SIMD void bend_lanes(const struct gz_surface_cast *cast, unsigned number, struct lanes lanes,
+		     struct packet *packet, struct glass *glass)
 {
 	struct RTCRay16 *ray = &packet->hit.ray;
 	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
 	float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
 	const int first = lanes.first;
 	const struct ways way = load_ways(ray, first);
-	struct meeting at = read_triangles(mesh, packet, lanes);
+	struct meeting at = read_meeting(cast, number, packet, lanes);
 	const vf distance = vf_load(ray->tfar + first);
 	const vm away = vf_less(vf_set(0), dot_lanes(at.normal, way.direction));
 	const vm inside = load_mask(glass->inside + first);
@@ -174,8 +160,7 @@ SIMD int bend_hits(const struct gz_surface_cast *cast, int first, struct packet 
 		const vi other = vi_add(number, vi_set(-(int32_t)i));
 		const vm mask = vm_but(met, vi_nonzero(other));
 		if (vm_any(mask))
-			bend_lanes(cast, &cast->meshes[i], (struct lanes) { first, mask }, packet,
-				   glass);
+			bend_lanes(cast, i, (struct lanes) { first, mask }, packet, glass);
 	}
 	relaunch_lanes(cast, first, packet);
 	store_mask(met, packet->valid + first);

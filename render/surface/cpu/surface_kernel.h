@@ -7,30 +7,21 @@
 
 #include "render/raycast/cpu/simd_light.h"
 #include "render/surface/cpu/surface_cast.h"
+#include "render/surface/cpu/surface_field.h"
 #include "render/surface/cpu/surface_glass.h"
 #include "render/surface/cpu/surface_packet.h"
 
 /*
- * Begin the shadow rays. A ray that began on its triangle would meet the neighbours of a surface
- * that is meant to be round: the place is lifted to where the planes of the corners' normals would
- * have it (Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021, chapter 4), and a
- * little more because places are rounded.
+ * Lift places from where the lanes of the mask have met a mesh to where the planes of the corners'
+ * normals would have them: a ray that began on its triangle would meet the neighbours of a surface
+ * that is meant to be round (Hanika, "Hacking the shadow terminator", Ray Tracing Gems II, 2021,
+ * chapter 4).
  */
-SIMD void aim_shadows(const struct gz_surface_cast *cast, const struct gz_surface_mesh *mesh,
-		      const struct meeting *at, const struct view *view, struct lanes lanes,
-		      struct packet *packet)
+SIMD void lift_places(const struct gz_surface_mesh *mesh, const struct meeting *at, vf side,
+		      vm mask, vf place[3])
 {
-	const int first = lanes.first;
-	const vm mask = lanes.mask;
 	vf corners[3][3];
 	load_vertices(mesh->positions, at->vertices, mask, corners);
-	struct RTCRay16 *ray = &packet->shadow;
-	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
-	const vm behind = vf_less(dot_lanes(at->normal, view->eye), vf_set(0));
-	const vf side = vf_select(behind, vf_set(-1), vf_set(1));
-	vf place[3];
-	for (int axis = 0; axis < 3; axis++)
-		place[axis] = vf_fma(side * vf_set(cast->lift), at->normal[axis], at->place[axis]);
 	for (int corner = 0; corner < 3; corner++) {
 		vf from[3];
 		for (int axis = 0; axis < 3; axis++)
@@ -40,25 +31,44 @@ SIMD void aim_shadows(const struct gz_surface_cast *cast, const struct gz_surfac
 		for (int axis = 0; axis < 3; axis++)
 			place[axis] = vf_fma(lift, at->corner_normals[corner][axis], place[axis]);
 	}
+}
+
+/* Begin the shadow rays, a little above the surface because places are rounded. */
+SIMD void aim_shadows(const struct gz_surface_cast *cast, unsigned number, const struct meeting *at,
+		      const struct view *view, struct lanes lanes, struct packet *packet)
+{
+	const int first = lanes.first;
+	struct RTCRay16 *ray = &packet->shadow;
+	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	const vm behind = vf_less(dot_lanes(at->normal, view->eye), vf_set(0));
+	const vf side = vf_select(behind, vf_set(-1), vf_set(1));
+	vf place[3];
+	for (int axis = 0; axis < 3; axis++)
+		place[axis] = vf_fma(side * vf_set(cast->lift), at->normal[axis], at->place[axis]);
+	if (!cast->field.on || number != cast->field.number)
+		lift_places(&cast->meshes[number], at, side, lanes.mask, place);
 	const vf towards[3] = { vf_set(cast->light.towards[0]), vf_set(cast->light.towards[1]),
 				vf_set(cast->light.towards[2]) };
 	vf from = vf_set(0), to = vf_set(INFINITY);
 	if (cast->clipped)
 		(void)clip_lanes(cast, place, towards, &from, &to);
-	put_lanes(mask, to, ray->tfar + first);
+	put_lanes(lanes.mask, to, ray->tfar + first);
 	for (int axis = 0; axis < 3; axis++)
-		put_lanes(mask, place[axis], origins[axis] + first);
+		put_lanes(lanes.mask, place[axis], origins[axis] + first);
 }
 
 /* Light what the lanes of the mask have met, all of one mesh. Returns the lanes that the light
  * would reach if nothing stood between. */
-SIMD vm light_lanes(const struct gz_surface_cast *cast, const struct gz_surface_mesh *mesh,
-		    int first, vm mask, struct packet *packet, struct gz_surface_hits *hits)
+SIMD vm light_lanes(const struct gz_surface_cast *cast, unsigned number, struct lanes lanes,
+		    struct packet *packet, struct gz_surface_hits *hits)
 {
+	const struct gz_surface_mesh *mesh = &cast->meshes[number];
+	const int first = lanes.first;
+	const vm mask = lanes.mask;
 	const struct RTCRay16 *ray = &packet->hit.ray;
 	const float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
 	const float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
-	struct meeting at = read_triangles(mesh, packet, (struct lanes) { first, mask });
+	struct meeting at = read_meeting(cast, number, packet, lanes);
 	struct view view;
 	const vf distance = vf_load(ray->tfar + first);
 	vf length2 = vf_set(1e-12F); /* not 0 where eye and light are opposite */
@@ -81,7 +91,7 @@ SIMD vm light_lanes(const struct gz_surface_cast *cast, const struct gz_surface_
 		put_lanes(mask, vf_set(mesh->colour[channel]), packet->colour[channel] + first);
 	if (!cast->shadows)
 		return mask;
-	aim_shadows(cast, mesh, &at, &view, (struct lanes) { first, mask }, packet);
+	aim_shadows(cast, number, &at, &view, lanes, packet);
 	return vm_and(mask, vf_less(vf_set(cast->light.ambient), shine.factor));
 }
 
@@ -111,8 +121,8 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 		const vm mask = vm_but(left, vi_nonzero(other));
 		left = vm_but(left, mask);
 		if (vm_any(mask))
-			lit = vm_or(lit,
-				    light_lanes(cast, &cast->meshes[i], first, mask, packet, hits));
+			lit = vm_or(lit, light_lanes(cast, i, (struct lanes) { first, mask },
+						     packet, hits));
 	}
 	const vf depth = vf_load(packet->hit.ray.tfar + first) * vf_set(cast->world_per_mm);
 	vf_store(hits->depth + first, vf_select(met, depth, vf_set(INFINITY)));
@@ -171,6 +181,14 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 
 #define EACH_REGISTER for (int first = 0; first < GZ_SURFACE_RAYS; first += SIMD_LANES)
 
+/* Find what the rays of a packet meet first. */
+SIMD void meet_surfaces(const struct gz_surface_cast *cast, struct packet *packet)
+{
+	gz_embree_intersect(packet->valid, cast->tree, &packet->hit);
+	if (cast->field.on)
+		EACH_REGISTER meet_field(cast, first, packet);
+}
+
 /* Follow the rays of a packet through glass, after their first triangles have been found. */
 SIMD void follow_through_glass(const struct gz_surface_cast *cast, struct packet *packet,
 			       struct gz_surface_hits *out_hits)
@@ -186,7 +204,7 @@ SIMD void follow_through_glass(const struct gz_surface_cast *cast, struct packet
 		EACH_REGISTER any |= bend_hits(cast, first, packet, &glass);
 		if (!any || met + 1 == cast->bounces)
 			break;
-		gz_embree_intersect(packet->valid, cast->tree, &packet->hit);
+		meet_surfaces(cast, packet);
 	}
 	EACH_REGISTER
 	{
@@ -210,7 +228,7 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 		if (cast->shadows)
 			begin_shadows(cast, first, &packet);
 	}
-	gz_embree_intersect(packet.valid, cast->tree, &packet.hit);
+	meet_surfaces(cast, &packet);
 	if (cast->bounces) {
 		follow_through_glass(cast, &packet, out_hits);
 		return;
@@ -219,6 +237,8 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 	if (cast->shadows && any_lit) {
 		gz_embree_occluded(packet.valid, cast->tree, tile->coherent_shadows,
 				   &packet.shadow);
+		if (cast->field.on)
+			EACH_REGISTER shade_by_field(cast, first, &packet);
 		EACH_REGISTER darken_lanes(cast, first, &packet);
 	}
 	EACH_REGISTER colour_lanes(cast, first, &packet, out_hits);

@@ -90,6 +90,21 @@ SIMD void aim_lanes(const struct gz_surface_cast *cast, const struct gz_surface_
 	store_mask(valid, packet->valid + first);
 }
 
+/* The origins and directions of SIMD_LANES rays. */
+struct ways {
+	vf origin[3], direction[3];
+};
+
+SIMD struct ways load_ways(const struct RTCRay16 *ray, int first)
+{
+	return (struct ways) {
+		{ vf_load(ray->org_x + first), vf_load(ray->org_y + first),
+		  vf_load(ray->org_z + first) },
+		{ vf_load(ray->dir_x + first), vf_load(ray->dir_y + first),
+		  vf_load(ray->dir_z + first) },
+	};
+}
+
 /* Some of SIMD_LANES lanes, from ray `first` on. */
 struct lanes {
 	int first;
