@@ -28,16 +28,26 @@ double gz_classify_dropout_ns(const struct gz_classify_state *state,
 	return fmax(allowed_ns, DROPOUT_PERIODS * state->period_ns);
 }
 
-uint64_t gz_classify_delay(const struct gz_classify_state *state,
-			   const struct gz_classify_params *params)
+static uint64_t samples_within(const struct gz_classify_state *state, double delay_ms)
 {
 	if (state->period_ns <= 0)
 		return 0;
-	double samples = params->final_delay_ms * 1e6 / state->period_ns - DELAY_SLACK;
+	double samples = delay_ms * 1e6 / state->period_ns - DELAY_SLACK;
 	return samples < 0                      ? 0
 	       : samples > GZ_CLASSIFY_RING / 2 ? GZ_CLASSIFY_RING / 2
 						: (uint64_t)samples;
 }
+
+uint64_t gz_classify_delay(const struct gz_classify_state *state,
+			   const struct gz_classify_params *params)
+{
+	return samples_within(state, params->final_delay_ms);
+}
+
+/* The whole samples within this time are the GZ_FOREST_CERTAIN_MS that the forest looks ahead, at
+ * any rate that it learned from. Chosen: the preset of final_delay_ms. A label that waits for
+ * longer is of the same moment, and one that waits for less is that of the sample itself. */
+static const double CERTAIN_WITHIN_MS = 10;
 
 static void learn_sample_period(struct gz_classify_state *state, int64_t step_ns)
 {
@@ -315,9 +325,10 @@ static void ask_forests(struct gz_classify_state *state, const struct gz_classif
 	const struct gz_movement_input measured = { input->time_ns, input->valid, input->raw };
 	if (!gz_movement_step(&state->movement, display, &measured, features))
 		return;
-	uint64_t newest = state->count - 1, delay = gz_classify_delay(state, params);
+	const uint64_t newest = state->count - 1;
+	const uint64_t delay = samples_within(state, CERTAIN_WITHIN_MS);
 	label_by_forest(state, &gz_forest_at_once, &state->at_once_memory, features, newest);
-	if (delay > 0 && delay <= newest)
+	if (delay > 0 && delay <= newest && delay <= gz_classify_delay(state, params))
 		label_by_forest(state, &gz_forest_certain, &state->certain_memory, features,
 				newest - delay);
 }

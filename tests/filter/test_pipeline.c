@@ -227,6 +227,39 @@ static void certain_labels_come_in_order_within_10_ms(void **state)
 	free(times_ns);
 }
 
+static void labels_that_wait_longer_are_the_same(void **state)
+{
+	(void)state;
+	enum { COUNT = 5000 };
+	static enum gz_event event[2][COUNT];
+	for (int i = 0; i < 2; i++) {
+		static struct gz_pipeline pipeline;
+		struct gz_sim_params params = sim_params(250);
+		struct gz_pipeline_params settings = gz_pipeline_default_params();
+		params.viewer.blinks_per_min = params.loss = params.eye_loss = 0;
+		settings.classify.final_delay_ms = i == 0 ? 10 : 20;
+		struct gz_sim_tracker *tracker = NULL;
+		assert_int_equal(gz_sim_tracker_create(&params, VIEWING_START_NS, NULL, &tracker),
+				 GZ_OK);
+		const struct gz_display display = gz_sim_tracker_display(tracker);
+		gz_pipeline_init(&pipeline, &settings, &display);
+		for (uint64_t k = 0; k < COUNT; k++) {
+			struct gz_sim_sample sample;
+			struct gz_pipeline_output out;
+			gz_sim_tracker_next(tracker, &sample);
+			sample.sample.seq = k;
+			gz_pipeline_step(&pipeline, &sample.sample, &out);
+			for (uint64_t n = 0; out.gaze.final_known && n <= out.gaze.final_span; n++)
+				event[i][out.gaze.final_seq - n] = out.gaze.final_event;
+		}
+		gz_sim_tracker_destroy(&tracker);
+	}
+	int different = 0;
+	for (int k = 10; k < COUNT - 10; k++)
+		different += event[0][k] != event[1][k];
+	CHECK_BETWEEN(different, 0, COUNT / 200); /* where short losses are judged */
+}
+
 static void each_sample_gets_one_certain_label_whatever_the_gaps(void **state)
 {
 	(void)state;
@@ -536,6 +569,7 @@ TEST_SUITE(pipeline)
 		cmocka_unit_test(damaged_times_never_bring_time_back),
 		cmocka_unit_test(copied_state_goes_on_in_the_same_way),
 		cmocka_unit_test(certain_labels_come_in_order_within_10_ms),
+		cmocka_unit_test(labels_that_wait_longer_are_the_same),
 		cmocka_unit_test(each_sample_gets_one_certain_label_whatever_the_gaps),
 		cmocka_unit_test(an_eye_dropping_out_does_not_move_the_point),
 		cmocka_unit_test(saccades_are_found_at_any_rate),
