@@ -1,25 +1,47 @@
 /**
  * @file
- * Accepting connections while file descriptors are scarce. libzmq 4.3.4 calls abort() if a local
- * socket cannot accept a connection because no file descriptor or no memory is left; it tolerates
- * that over TCP. The quota (quota.h) ends connections beyond its limit, but a burst may come faster
- * than it is counted. So a program that contains this file defines accept() and accept4() itself:
- * its own definitions come before those of the C library, for libzmq too.
+ * libzmq's calls of the system for connections, which the daemon answers itself. A program that
+ * contains this file defines accept(), accept4() and recv(): its own definitions come before those
+ * of the C library, for libzmq too.
+ *
+ * - libzmq 4.3.4 calls abort() if a local socket cannot accept a connection because no file
+ *   descriptor or no memory is left; it tolerates that over TCP. The quota (quota.h) ends
+ *   connections beyond its limit, but a burst may come faster than it is counted.
+ * - libzmq takes every reader and all its subscriptions. The door (door.h) is asked first.
  */
 #ifndef GZ_DAEMON_ACCEPT_H
 #define GZ_DAEMON_ACCEPT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <sys/socket.h>
 
-/** As accept4(2), under whose name it is linked, except for one error: without a free descriptor or
- * memory it is EAGAIN. libzmq then tries again until the quota has freed a descriptor. */
+#include "daemon/door.h"
+
+/** As accept4(2), under whose name it is linked, except for two errors. Without a free descriptor
+ * or memory it is EAGAIN; libzmq then tries again until the quota has freed a descriptor. So it is
+ * if the door refuses the connection, which is then closed. */
 int gz_accept4(int fd, struct sockaddr *address, socklen_t *size, int flags) __asm__("accept4");
 
 /** The same for accept(2). */
 int gz_accept(int fd, struct sockaddr *address, socklen_t *size) __asm__("accept");
 
+/** As recv(2), under whose name it is linked. What the door refuses is dropped, and the connection
+ * has ended: 0. */
+ssize_t gz_recv(int fd, void *bytes, size_t size, int flags) __asm__("recv");
+
 /** Whether libzmq finds these definitions. The linker exports them because libzmq needs them. */
 bool gz_accept_is_found(void);
+
+/**
+ * Ask a door about connections from now on.
+ *
+ * @param door  borrowed until this is called again; NULL: ask none. Only one door is asked.
+ * @param port  local TCP port at which connections come through it, in the host's byte order; up to
+ *              four ports of one door are kept, further ones ignored
+ *
+ * Threads: any.
+ */
+void gz_accept_through(struct gz_door *door, uint16_t port);
 
 #endif

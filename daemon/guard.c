@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "daemon/accept.h"
 #include "daemon/admission.h"
+#include "daemon/door.h"
 #include "daemon/quota.h"
 
 #define GZ_LOG_MODULE "security"
@@ -32,6 +33,9 @@ enum { AT_ONCE = 64 };
 
 /* Kinds of message about an address; each is logged once a minute. */
 enum notice { LET_IN, UNKNOWN_KEY, WRONG_SERVER_KEY, WITHOUT_KEYS, LEFT };
+
+/* A message about refusals at the door is logged once a minute. */
+#define REFUSED_AT_DOOR_NS (60 * GZ_NS_PER_S)
 
 /* A connection that may still fail. */
 struct peer {
@@ -63,6 +67,9 @@ struct gz_guard {
 	struct gz_quota *quota; /* NULL until the start */
 	struct gz_authorized_keys authorized;
 	struct gz_address_limit told;
+	struct gz_door *door;
+	uint64_t door_told[GZ_QUOTA_REASON_COUNT]; /* refusals that are in the log */
+	struct gz_ratelimit door_complaints[GZ_QUOTA_REASON_COUNT];
 };
 
 uint32_t gz_connections_count(const struct gz_connections *connections)
@@ -279,6 +286,26 @@ static void take_pending(struct gz_guard *guard)
 	}
 }
 
+/* The door cannot log by itself: it is asked by the thread that serves all connections. */
+static void log_refused_at_door(struct gz_guard *guard)
+{
+	static const char *const texts[GZ_QUOTA_REASON_COUNT] = {
+		[GZ_QUOTA_TOO_MANY] = "are closed, because there are too many, or too many "
+				      "come at a time",
+		[GZ_QUOTA_TOO_LARGE] = "are closed, because they sent too many subscriptions",
+	};
+	for (int reason = 0; reason < GZ_QUOTA_REASON_COUNT; reason++) {
+		uint64_t held_back, refused = gz_door_refused(guard->door, reason);
+		if (refused == guard->door_told[reason] ||
+		    !gz_ratelimit_pass(&guard->door_complaints[reason], gz_clock_now_ns(),
+				       REFUSED_AT_DOOR_NS, &held_back))
+			continue;
+		gz_warn(guard->log, "client bug: the connections of %llu readers over TCP %s",
+			(unsigned long long)(refused - guard->door_told[reason]), texts[reason]);
+		guard->door_told[reason] = refused;
+	}
+}
+
 static void *guard_run(void *user)
 {
 	struct gz_guard *guard = user;
@@ -300,6 +327,7 @@ static void *guard_run(void *user)
 			return NULL;
 		gz_quota_check(guard->quota, gz_clock_now_ns());
 		take_pending(guard);
+		log_refused_at_door(guard);
 	}
 }
 
@@ -332,7 +360,7 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
 	guard->context = context;
 	guard->log = log;
 	guard->quit_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-	enum gz_result result = guard->quit_fd >= 0 ? GZ_OK : GZ_ERR_NO_MEM;
+	enum gz_result result = guard->quit_fd >= 0 ? gz_door_create(&guard->door) : GZ_ERR_NO_MEM;
 	if (result == GZ_OK && authorized_keys)
 		result = open_zap(guard, authorized_keys);
 	if (result != GZ_OK) {
@@ -389,8 +417,9 @@ enum gz_result gz_guard_start(struct gz_guard *guard)
 {
 	uint32_t connections = gz_quota_connections_possible();
 	if (!gz_accept_is_found())
-		gz_warn(guard->log, "libzmq does not find the program's accept4(); if file "
-				    "descriptors run out, it may end the program");
+		gz_warn(guard->log, "libzmq does not find the program's accept4() and recv(); if "
+				    "file descriptors run out, it may end the program, and "
+				    "many readers may hold the stream");
 	if (gz_quota_create(connections, guard->log, &guard->quota) != GZ_OK) {
 		gz_err(guard->log, "no memory for %u connections", connections);
 		return GZ_ERR_NO_MEM;
@@ -405,7 +434,19 @@ enum gz_result gz_guard_start(struct gz_guard *guard)
 
 uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reason)
 {
-	return guard->quota ? gz_quota_ended(guard->quota, reason) : 0;
+	uint64_t ended = guard->quota ? gz_quota_ended(guard->quota, reason) : 0;
+	return ended + gz_door_refused(guard->door, reason);
+}
+
+void gz_guard_open_door(const struct gz_connections *connections, int port)
+{
+	if (connections->of_readers)
+		gz_accept_through(connections->guard->door, (uint16_t)port);
+}
+
+void gz_guard_know_topic(struct gz_guard *guard, const char *topic)
+{
+	gz_door_know(guard->door, topic);
 }
 
 void gz_guard_destroy(struct gz_guard **guard)
@@ -425,6 +466,8 @@ void gz_guard_destroy(struct gz_guard **guard)
 	if (g->quit_fd >= 0)
 		close(g->quit_fd);
 	gz_quota_destroy(&g->quota);
+	gz_accept_through(NULL, 0);
+	gz_door_destroy(&g->door);
 	free(g);
 	*guard = NULL;
 }

@@ -2,7 +2,7 @@
  * @file
  * The authentication thread. It answers libzmq's question whether a client may connect (ZeroMQ
  * RFC 27/ZAP), counts connections, ends those beyond the quota (quota.h), and logs refused clients,
- * once a minute per address.
+ * once a minute per address. It also has the door (door.h) and logs whom that refuses.
  *
  * A client with an unknown key is refused by that answer. A client with a wrong server key, or
  * without keys, fails earlier, in the handshake: only the sockets' monitors report it.
@@ -60,7 +60,15 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
  */
 enum gz_result gz_guard_start(struct gz_guard *guard);
 
-/** How many connections were ended for @p reason since the start. Threads: any. */
+/** Let clients without keys at a local TCP port of a publishing socket come through the guard's
+ * door (door.h); ignored for other sockets. Call it when the port has just been bound. The doors of
+ * two guards cannot be open at a time. */
+void gz_guard_open_door(const struct gz_connections *connections, int port);
+
+/** Tell the door a topic that the daemon sends. Call it before the door is opened. */
+void gz_guard_know_topic(struct gz_guard *guard, const char *topic);
+
+/** How many connections were ended or refused for @p reason since the start. Threads: any. */
 uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reason);
 
 /** How many connections the socket has now, local ones and those over TCP. Threads: any. */

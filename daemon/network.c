@@ -9,6 +9,7 @@
 
 #include "protocol/endpoint.h"
 #include "protocol/key.h"
+#include "protocol/wire.h"
 
 #define GZ_LOG_MODULE "network"
 
@@ -49,6 +50,17 @@ static enum gz_result read_server_key(struct gz_network *network, char path[GZ_P
 	return GZ_ERR_FORMAT;
 }
 
+/* What the daemon sends besides the topics of the protocol. */
+static void know_surfaces(const struct gz_network *network)
+{
+	char topic[sizeof GZ_TOPIC_SURFACES + GZ_NAME_SIZE];
+	for (size_t i = 0; i < network->config->surface_count; i++) {
+		snprintf(topic, sizeof topic, "%s%s", GZ_TOPIC_SURFACES,
+			 network->config->surface[i]);
+		gz_guard_know_topic(network->guard, topic);
+	}
+}
+
 enum gz_result gz_network_open(struct gz_network *network)
 {
 	char path[GZ_PATH_SIZE], authorized[GZ_PATH_SIZE + sizeof GZ_AUTHORIZED_KEYS_FILE];
@@ -62,8 +74,11 @@ enum gz_result gz_network_open(struct gz_network *network)
 			 (int)(strlen(path) - strlen(GZ_SERVER_KEY_FILE)), path,
 			 GZ_AUTHORIZED_KEYS_FILE);
 	}
-	return gz_guard_create(network->context, curve ? authorized : NULL, network->log,
-			       &network->guard);
+	enum gz_result result = gz_guard_create(network->context, curve ? authorized : NULL,
+						network->log, &network->guard);
+	if (result == GZ_OK)
+		know_surfaces(network);
+	return result;
 }
 
 void gz_network_endpoint(const struct gz_network *network, int port, char text[GZ_ENDPOINT_SIZE])
@@ -172,6 +187,9 @@ enum gz_result gz_network_bind(const struct gz_network *network, void *socket, c
 		result = bind_local(network, socket, name);
 	if (result == GZ_OK && network->config->tcp != GZ_TCP_OFF)
 		result = bind_tcp(network, socket, name, endpoint, out_port);
+	/* Clients with keys are known, and what they send is encrypted. */
+	if (result == GZ_OK && network->config->tcp == GZ_TCP_LOOPBACK)
+		gz_guard_open_door(connections, *out_port);
 	if (result == GZ_OK && out_connections)
 		*out_connections = connections;
 	return result;

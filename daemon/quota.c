@@ -58,12 +58,14 @@ uint64_t gz_connection_identity(int fd)
 	return status.st_ino;
 }
 
-/* shutdown() leaves what has arrived, and libzmq would still read that. */
+/* shutdown() leaves what has arrived, and libzmq would still read that. recv() is not called,
+ * because it asks the door (accept.h), which may be the caller. */
 static void discard_received(int fd)
 {
 	static const int rounds_max = 256; /* 16 MiB, more than a socket holds */
 	char bytes[65536];
-	for (int i = 0; i < rounds_max && recv(fd, bytes, sizeof bytes, MSG_DONTWAIT) > 0; i++)
+	for (int i = 0;
+	     i < rounds_max && recvfrom(fd, bytes, sizeof bytes, MSG_DONTWAIT, NULL, NULL) > 0; i++)
 		;
 }
 

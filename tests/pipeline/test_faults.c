@@ -215,6 +215,62 @@ static void connect_idly(int port, int *sockets, int count)
 	}
 }
 
+/* Send what a reader of ZMTP 3 sends until the daemon takes subscriptions. */
+static void shake_hands(int fd)
+{
+	static const unsigned char greeting[64] = { 0xff, 0,    0, 0, 0,   0,   0,   0,
+						    1,    0x7f, 3, 0, 'N', 'U', 'L', 'L' };
+	static const char ready[] = "\x04\x19\x05READY\x0bSocket-Type\0\0\0\3SUB";
+	unsigned char answer[sizeof greeting + 28]; /* READY of an XPUB has 28 bytes */
+	assert_int_equal(send(fd, greeting, sizeof greeting, MSG_NOSIGNAL), sizeof greeting);
+	assert_int_equal(send(fd, ready, sizeof ready - 1, MSG_NOSIGNAL), sizeof ready - 1);
+	assert_int_equal(recv(fd, answer, sizeof answer, MSG_WAITALL), sizeof answer);
+}
+
+/* Subscribe to @p count topics of 200 bytes that nobody else has. The daemon may end the connection
+ * meanwhile. */
+static void subscribe_strangely(int fd, int connection, int count)
+{
+	unsigned char frame[2 + 201] = { 0, 201, 1 };
+	for (int i = 0; i < count; i++) {
+		char topic[32];
+		int length = snprintf(topic, sizeof topic, "%d.%d.", connection, i);
+		memset(frame + 3, 'x', 200);
+		memcpy(frame + 3, topic, (size_t)length);
+		if (send(fd, frame, sizeof frame, MSG_NOSIGNAL) < 0)
+			return;
+	}
+}
+
+/* libzmq walks all subscriptions for each connection that ends, in the thread of the stream. */
+static void gazed_readers_with_many_strange_subscriptions_are_refused(void **state)
+{
+	(void)state;
+	enum { STRANGERS = 48, EACH = 2, LET_IN_MAX = 16, STATUS_MAX = 20 };
+	int strangers[STRANGERS];
+	struct reader reader;
+	struct gazed_process gazed;
+	const char *const arguments[] = { "--control", "tcp://127.0.0.1:*", NULL };
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &gazed);
+	gazed_wait_ready(&place, &gazed);
+	connect_idly(atoi(gazed_request(&place, "SUB_PORT", NULL)), strangers, STRANGERS);
+	for (int i = 0; i < STRANGERS; i++) {
+		shake_hands(strangers[i]);
+		subscribe_strangely(strangers[i], i, EACH);
+	}
+	for (int i = 0; i < STRANGERS; i++)
+		close(strangers[i]);
+	reader_open(&reader, &place, "");
+	while (reader.status_count == 0 ||
+	       reader.status.refused[GZ_REFUSAL_SUBSCRIPTIONS] < STRANGERS - LET_IN_MAX) {
+		reader_receive_gaze(&reader, reader.gaze_count + 10);
+		assert_true(reader.status_count < STATUS_MAX);
+	}
+	reader_close(&reader);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	assert_non_null(strstr(gazed_said(&gazed), "sent too many subscriptions"));
+}
+
 static void gazed_with_more_connections_than_its_soft_limit_of_files_goes_on(void **state)
 {
 	(void)state;
@@ -253,6 +309,7 @@ TEST_SUITE(faults)
 		TEST(gazed_device_clock_that_jumps_or_runs_back_never_turns_the_streams_time),
 		TEST(gazed_serves_many_readers_without_a_gap),
 		TEST(gazed_with_more_connections_than_its_soft_limit_of_files_goes_on),
+		TEST(gazed_readers_with_many_strange_subscriptions_are_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,313 @@
+#include "daemon/door.h"
+
+#include <linux/sockios.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+
+#include "base/clock.h"
+#include "daemon/zmtp_input.h"
+#include "protocol/wire.h"
+
+/* A reader with more unread bytes than this does not read. Chosen: a second of gaze; live readers
+ * have none. */
+enum { UNREAD_MAX = 16384 };
+
+/* A quantity that runs out with time. */
+struct leak {
+	uint64_t level;
+	int64_t since_ns;
+};
+
+struct visitor {
+	uint64_t identity;
+	int64_t arrived_ns;
+	uint64_t order; /* of arrival */
+	struct gz_zmtp_input input;
+	uint64_t cost;
+	uint64_t strange;
+	bool useful; /* has subscribed to what the daemon sends */
+};
+
+struct gz_door {
+	uint32_t count;
+	int end; /* no visitor has had a descriptor from here on */
+	uint64_t arrivals;
+	uint64_t strange; /* of those that are present */
+	int64_t full_ns;  /* when there was no room last */
+	int64_t full_since_ns;
+	struct leak arrived, settling, shared;
+	_Atomic uint64_t refused[GZ_QUOTA_REASON_COUNT];
+	size_t topic_count;
+	char topics[GZ_DOOR_TOPICS_MAX][GZ_ZMTP_TOPIC_SIZE];
+	bool present[GZ_QUOTA_DESCRIPTORS];
+	struct visitor visitors[GZ_QUOTA_DESCRIPTORS];
+};
+
+/* Let pass what a second's @p per_s is in the time since the last call. */
+static void leak_out(struct leak *leak, uint64_t per_s, int64_t now_ns)
+{
+	int64_t step_ns = now_ns - leak->since_ns;
+	if (step_ns > 100 * GZ_NS_PER_S || leak->level == 0) {
+		*leak = (struct leak) { .level = 0, .since_ns = now_ns };
+		return;
+	}
+	uint64_t out = step_ns > 0 ? (uint64_t)step_ns * per_s / (uint64_t)GZ_NS_PER_S : 0;
+	if (out == 0) /* steps of less than one add up */
+		return;
+	leak->level -= out < leak->level ? out : leak->level;
+	leak->since_ns = now_ns;
+}
+
+enum gz_result gz_door_create(struct gz_door **out_door)
+{
+	/* Beginnings of what Pupil Capture sends are known too: its readers ask for them. */
+	static const char *const known[] = {
+		GZ_TOPIC_GAZE_BOTH,
+		GZ_TOPIC_GAZE_RIGHT,
+		GZ_TOPIC_GAZE_LEFT,
+		"gaze.2d.01.",
+		"gaze.2d.0.",
+		"gaze.2d.1.",
+		GZ_TOPIC_PUPIL_RIGHT,
+		GZ_TOPIC_PUPIL_LEFT,
+		"pupil.0.2d",
+		"pupil.1.2d",
+		GZ_TOPIC_SURFACES,
+		GZ_TOPIC_FIXATIONS,
+		GZ_TOPIC_BLINKS,
+		GZ_TOPIC_SACCADES,
+		GZ_TOPIC_STATUS,
+		GZ_TOPIC_EVENT_FINAL,
+		GZ_TOPIC_ANNOTATION,
+		GZ_TOPIC_POINTER,
+		GZ_TOPIC_WINDOW,
+		GZ_TOPIC_NOTIFY,
+		"remote_annotation",
+		"logging.",
+		"frame.world",
+		(GZ_TOPIC_NOTIFY GZ_SUBJECT_RECORDING_STARTED),
+		(GZ_TOPIC_NOTIFY GZ_SUBJECT_RECORDING_STOPPED),
+		(GZ_TOPIC_NOTIFY GZ_SUBJECT_CALIBRATION_FAILED),
+	};
+	/* Untouched pages cost no memory. */
+	struct gz_door *door = calloc(1, sizeof *door);
+	if (!door)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+		gz_door_know(door, known[i]);
+	*out_door = door;
+	return GZ_OK;
+}
+
+void gz_door_know(struct gz_door *door, const char *topic)
+{
+	if (door->topic_count < GZ_DOOR_TOPICS_MAX)
+		snprintf(door->topics[door->topic_count++], GZ_ZMTP_TOPIC_SIZE, "%s", topic);
+}
+
+/* Whether the subscription is the beginning of a topic that the daemon sends: its nodes are there
+ * whoever subscribes. */
+static bool is_known_topic(const struct gz_door *door, const struct gz_zmtp_frame *frame)
+{
+	if (frame->topic_size >= GZ_ZMTP_TOPIC_SIZE)
+		return false;
+	for (size_t i = 0; i < door->topic_count; i++) {
+		if (strlen(door->topics[i]) >= frame->topic_size &&
+		    memcmp(door->topics[i], frame->topic, (size_t)frame->topic_size) == 0)
+			return true;
+	}
+	return false;
+}
+
+static void forget_visitor(struct gz_door *door, int fd, int64_t now_ns)
+{
+	struct visitor *visitor = &door->visitors[fd];
+	if (!door->present[fd])
+		return;
+	leak_out(&door->settling, GZ_DOOR_STRANGE_PER_S, now_ns);
+	door->count--;
+	door->strange -= visitor->strange;
+	door->settling.level += visitor->strange;
+	door->present[fd] = false;
+}
+
+static void note_refused(struct gz_door *door, enum gz_quota_reason reason)
+{
+	atomic_fetch_add_explicit(&door->refused[reason], 1, memory_order_relaxed);
+}
+
+static void sweep_visitors(struct gz_door *door, int64_t now_ns)
+{
+	for (int fd = 0; fd < door->end; fd++) {
+		if (door->present[fd] && gz_connection_identity(fd) != door->visitors[fd].identity)
+			forget_visitor(door, fd, now_ns);
+	}
+}
+
+/* Why a connection is ended in favour of a new one; the first reason first. */
+enum standing { USELESS, STALLED, NEW, ESTABLISHED };
+
+static enum standing standing_of(const struct gz_door *door, int fd, int64_t now_ns)
+{
+	const struct visitor *visitor = &door->visitors[fd];
+	int unread = 0;
+	if (!visitor->useful && now_ns - visitor->arrived_ns > GZ_DOOR_HANDSHAKE_MS * GZ_NS_PER_MS)
+		return USELESS;
+	if (ioctl(fd, SIOCOUTQ, &unread) == 0 && unread > UNREAD_MAX)
+		return STALLED;
+	int64_t before_ns = door->full_since_ns - visitor->arrived_ns;
+	return visitor->useful && before_ns >= GZ_DOOR_NEW_MS * GZ_NS_PER_MS ? ESTABLISHED : NEW;
+}
+
+/* The connection to end in favour of a new one. @return -1: none */
+static int least_useful(const struct gz_door *door, int64_t now_ns)
+{
+	int found = -1;
+	enum standing least = ESTABLISHED;
+	for (int fd = 0; fd < door->end; fd++) {
+		const struct visitor *visitor = &door->visitors[fd];
+		if (!door->present[fd])
+			continue;
+		enum standing standing = standing_of(door, fd, now_ns);
+		if (standing < least || (found >= 0 && standing == least &&
+					 visitor->order < door->visitors[found].order)) {
+			found = fd;
+			least = standing;
+		}
+	}
+	return found;
+}
+
+/* @return whether there is room for one more */
+static bool make_room(struct gz_door *door, int64_t now_ns)
+{
+	if (door->count < GZ_DOOR_CONNECTIONS)
+		return true;
+	sweep_visitors(door, now_ns);
+	if (door->count < GZ_DOOR_CONNECTIONS)
+		return true;
+	if (door->full_ns == 0 || now_ns - door->full_ns > GZ_DOOR_CALM_MS * GZ_NS_PER_MS)
+		door->full_since_ns = now_ns;
+	door->full_ns = now_ns;
+	int fd = least_useful(door, now_ns);
+	if (fd < 0)
+		return false;
+	gz_connection_end(fd, door->visitors[fd].identity);
+	forget_visitor(door, fd, now_ns);
+	note_refused(door, GZ_QUOTA_TOO_MANY);
+	return true;
+}
+
+bool gz_door_enter(struct gz_door *door, int fd, uint64_t identity, int64_t now_ns)
+{
+	bool has_place = fd >= 0 && fd < GZ_QUOTA_DESCRIPTORS;
+	if (has_place)
+		forget_visitor(door, fd, now_ns);
+	leak_out(&door->arrived, GZ_DOOR_NODES_PER_S, now_ns);
+	if (!has_place || door->arrived.level >= GZ_DOOR_NODES || !make_room(door, now_ns)) {
+		note_refused(door, GZ_QUOTA_TOO_MANY);
+		return false;
+	}
+	door->arrived.level += GZ_DOOR_KNOWN_NODES + door->strange + door->settling.level;
+	door->visitors[fd] = (struct visitor) { .identity = identity,
+						.arrived_ns = now_ns,
+						.order = door->arrivals++ };
+	door->present[fd] = true;
+	door->count++;
+	if (fd >= door->end)
+		door->end = fd + 1;
+	return true;
+}
+
+static void charge_frame(const struct gz_door *door, struct visitor *visitor,
+			 const struct gz_zmtp_frame *frame)
+{
+	bool strange = frame->kind == GZ_ZMTP_UNKNOWN || frame->kind == GZ_ZMTP_SUBSCRIBE;
+	visitor->cost += frame->size;
+	if (frame->kind == GZ_ZMTP_SUBSCRIBE || frame->kind == GZ_ZMTP_MESSAGE)
+		visitor->cost += GZ_DOOR_MESSAGE_COST;
+	if (frame->kind == GZ_ZMTP_SUBSCRIBE && is_known_topic(door, frame)) {
+		visitor->useful = true;
+		strange = false;
+	}
+	if (strange)
+		visitor->strange +=
+			frame->kind == GZ_ZMTP_UNKNOWN ? frame->size : frame->topic_size + 1;
+}
+
+/* What of the visitor's cost is more than it has for itself. */
+static uint64_t shared_cost(const struct visitor *visitor, int64_t now_ns)
+{
+	int64_t age_s = (now_ns - visitor->arrived_ns) / GZ_NS_PER_S;
+	uint64_t own =
+		GZ_DOOR_READER_COST + (age_s > 0 ? (uint64_t)age_s * GZ_DOOR_READER_COST_PER_S : 0);
+	return visitor->cost > own ? visitor->cost - own : 0;
+}
+
+/* Whether the door has room for what the visitor has sent since it was @p before. */
+static bool is_bearable(struct gz_door *door, const struct visitor *before, struct visitor *visitor,
+			int64_t now_ns)
+{
+	uint64_t strange = visitor->strange - before->strange;
+	uint64_t shared = shared_cost(visitor, now_ns);
+	leak_out(&door->settling, GZ_DOOR_STRANGE_PER_S, now_ns);
+	leak_out(&door->shared, GZ_DOOR_SHARED_COST_PER_S, now_ns);
+	if (visitor->strange > GZ_DOOR_STRANGE_EACH)
+		return false;
+	if (strange > 0 && door->strange + door->settling.level + strange > GZ_DOOR_STRANGE) {
+		sweep_visitors(door, now_ns);
+		if (door->strange + door->settling.level + strange > GZ_DOOR_STRANGE)
+			return false;
+	}
+	if (shared > 0 && door->shared.level + shared > GZ_DOOR_SHARED_COST)
+		return false;
+	visitor->cost -= shared;
+	door->shared.level += shared;
+	door->strange += strange;
+	return true;
+}
+
+bool gz_door_pass(struct gz_door *door, int fd, uint64_t identity, const void *bytes, size_t size,
+		  int64_t now_ns)
+{
+	const unsigned char *at = bytes;
+	struct gz_zmtp_frame frame;
+	if (fd < 0 || fd >= GZ_QUOTA_DESCRIPTORS || !door->present[fd])
+		return true;
+	if (door->visitors[fd].identity != identity) {
+		forget_visitor(door, fd, now_ns);
+		return true;
+	}
+	struct visitor visitor = door->visitors[fd];
+	while (gz_zmtp_next(&visitor.input, &at, &size, &frame))
+		charge_frame(door, &visitor, &frame);
+	if (is_bearable(door, &door->visitors[fd], &visitor, now_ns)) {
+		door->visitors[fd] = visitor;
+		return true;
+	}
+	forget_visitor(door, fd, now_ns);
+	note_refused(door, GZ_QUOTA_TOO_LARGE);
+	return false;
+}
+
+void gz_door_leave(struct gz_door *door, int fd, int64_t now_ns)
+{
+	if (fd >= 0 && fd < GZ_QUOTA_DESCRIPTORS)
+		forget_visitor(door, fd, now_ns);
+}
+
+uint64_t gz_door_refused(const struct gz_door *door, enum gz_quota_reason reason)
+{
+	return atomic_load_explicit(&door->refused[reason], memory_order_relaxed);
+}
+
+void gz_door_destroy(struct gz_door **door)
+{
+	if (!door || !*door)
+		return;
+	free(*door);
+	*door = NULL;
+}

@@ -1,0 +1,124 @@
+/**
+ * @file
+ * The door through which readers without keys come: what they send is counted before libzmq takes
+ * it.
+ *
+ * libzmq 4.3.4 keeps all subscriptions of a socket in one tree with a node for each byte. When a
+ * connection ends, it walks the whole tree in the thread of the stream: connections times bytes. So
+ * what is in the tree, how many connections there are and how many come in a second is limited,
+ * such that the walks take a fraction of that thread. Topics that the daemon sends share their
+ * nodes and cost nothing; others are strange. A reader that subscribes to what the daemon sends
+ * comes in whatever strange ones do.
+ *
+ * The limits hold without a race, because accept.h asks in the middle of libzmq's own calls.
+ */
+#ifndef GZ_DAEMON_DOOR_H
+#define GZ_DAEMON_DOOR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/result.h"
+#include "daemon/quota.h"
+
+/** Most connections. If a further one comes, an old one is ended: one that has not subscribed to
+ * anything the daemon sends for GZ_DOOR_HANDSHAKE_MS, else one that does not read what it is sent,
+ * else one that came later than GZ_DOOR_NEW_MS before the house became full; the oldest of each
+ * first. If there is none of these, the new one is refused. Chosen: a laboratory has some tens, and
+ * the stream at 1000 Hz can serve these. */
+#define GZ_DOOR_CONNECTIONS 256
+
+/** How long a reader may take to subscribe, ms, if others want its place. Chosen: a hundred times
+ * what a reader on this machine needs. */
+#define GZ_DOOR_HANDSHAKE_MS 250
+
+/** How long before that a reader must have come to keep its place, ms. Those that come in a flood
+ * replace each other, so that they do not keep others out. Chosen. */
+#define GZ_DOOR_NEW_MS 1000
+
+/** How long nobody must have come to a full house for it to count as not full, ms. Chosen. */
+#define GZ_DOOR_CALM_MS 5000
+
+/** Most bytes of strange topics of all connections, and of one. A connection that has ended counts
+ * until GZ_DOOR_STRANGE_PER_S of all has passed, because libzmq lags behind. A topic counts with
+ * its frame, and its end does not give it back. Chosen: a laboratory's programs may have fifty of
+ * their own. */
+#define GZ_DOOR_STRANGE       2048
+#define GZ_DOOR_STRANGE_EACH  1024
+#define GZ_DOOR_STRANGE_PER_S 2048
+
+/** A connection that comes costs the nodes that libzmq walks when it ends: those of known topics,
+ * with the rest of what a connection costs, and the present strange ones. Chosen: some more than
+ * all known topics have. */
+#define GZ_DOOR_KNOWN_NODES 1024
+
+/** Most nodes that connections may cost in a second, and at once. Chosen: a walk takes about 0.1 us
+ * for each (measured), so a tenth of the stream's thread, and 50 ms. Without strange topics 512
+ * connections may come at once and 1000 in each second; with all that are allowed, a third. */
+#define GZ_DOOR_NODES_PER_S (1024 * GZ_DOOR_KNOWN_NODES)
+#define GZ_DOOR_NODES       (512 * GZ_DOOR_KNOWN_NODES)
+
+/** What each message of a reader costs besides its bytes. Chosen: the stream's thread needs some
+ * microseconds for it. */
+#define GZ_DOOR_MESSAGE_COST 32
+
+/** Bytes and costs that a reader has for itself, at once and for each second. Chosen: twenty
+ * subscriptions; three heartbeats a second. */
+#define GZ_DOOR_READER_COST       1024
+#define GZ_DOOR_READER_COST_PER_S 128
+
+/** What all readers share beyond that. Chosen: twelve readers with a hundred subscriptions each may
+ * come at once. */
+#define GZ_DOOR_SHARED_COST       65536
+#define GZ_DOOR_SHARED_COST_PER_S 16384
+
+/** Most topics that gz_door_know() keeps. */
+#define GZ_DOOR_TOPICS_MAX 64
+
+/** A door. One thread at a time, except for gz_door_refused(). */
+struct gz_door;
+
+/**
+ * Create a door without connections, which knows the topics of the protocol.
+ *
+ * @param[out] out_door  owned by the caller: gz_door_destroy()
+ * @retval GZ_ERR_NO_MEM  no memory
+ */
+enum gz_result gz_door_create(struct gz_door **out_door);
+
+/** Know a further topic that the daemon sends. Beyond GZ_DOOR_TOPICS_MAX it stays strange. */
+void gz_door_know(struct gz_door *door, const char *topic);
+
+/**
+ * A connection has come.
+ *
+ * @param fd        its descriptor
+ * @param identity  gz_connection_identity() of it
+ * @param now_ns    host time
+ * @return whether it may stay; if not, the caller closes it
+ */
+bool gz_door_enter(struct gz_door *door, int fd, uint64_t identity, int64_t now_ns);
+
+/**
+ * A connection has sent something, which libzmq has not taken yet.
+ *
+ * @param fd, identity  as gz_door_enter(); a connection that did not come through the door may pass
+ * @param bytes, size   untrusted
+ * @param now_ns        host time
+ * @return whether libzmq may take it; if not, the caller ends the connection, which is forgotten
+ */
+bool gz_door_pass(struct gz_door *door, int fd, uint64_t identity, const void *bytes, size_t size,
+		  int64_t now_ns);
+
+/** A connection has ended. Ignored if it did not come through the door. Those that end unnoticed
+ * are found when there are too many. */
+void gz_door_leave(struct gz_door *door, int fd, int64_t now_ns);
+
+/** How many connections were refused or ended: TOO_MANY, TOO_LARGE. Threads: any. */
+uint64_t gz_door_refused(const struct gz_door *door, enum gz_quota_reason reason);
+
+/** Free and set to NULL. Accepts a pointer to NULL. */
+void gz_door_destroy(struct gz_door **door);
+
+#endif

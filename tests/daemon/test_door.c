@@ -1,0 +1,372 @@
+#include "suite.h"
+
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "daemon/door.h"
+#include "daemon/zmtp_input.h"
+
+static struct gz_door *door;
+
+/* What a reader has sent. */
+struct sent {
+	size_t size;
+	unsigned char bytes[8192];
+};
+
+static void add_bytes(struct sent *sent, const void *bytes, size_t size)
+{
+	assert_true(size <= sizeof sent->bytes - sent->size);
+	memcpy(sent->bytes + sent->size, bytes, size);
+	sent->size += size;
+}
+
+static void add_greeting(struct sent *sent)
+{
+	static const unsigned char greeting[64] = { 0xff, 0,    0, 0, 0,   0,   0,   0,
+						    1,    0x7f, 3, 1, 'N', 'U', 'L', 'L' };
+	static const char ready[] = "\x04\x19\x05READY\x0bSocket-Type\0\0\0\3SUB";
+	add_bytes(sent, greeting, sizeof greeting);
+	add_bytes(sent, ready, sizeof ready - 1);
+}
+
+/* A frame with a length of one byte: @p head, then a topic of @p size bytes. */
+static void add_frame(struct sent *sent, unsigned char flags, const char *head, const char *topic,
+		      size_t size)
+{
+	unsigned char header[2] = { flags, (unsigned char)(strlen(head) + size) };
+	add_bytes(sent, header, sizeof header);
+	add_bytes(sent, head, strlen(head));
+	add_bytes(sent, topic, size);
+}
+
+static void add_subscription(struct sent *sent, const char *topic)
+{
+	add_frame(sent, 0, "\x01", topic, strlen(topic));
+}
+
+/* A connection as far as the door looks at it. */
+static int open_connection(void)
+{
+	int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	assert_true(fd >= 0);
+	return fd;
+}
+
+static bool enter(int fd, int64_t now_ns)
+{
+	return gz_door_enter(door, fd, gz_connection_identity(fd), now_ns);
+}
+
+static bool pass(int fd, const struct sent *sent, int64_t now_ns)
+{
+	return gz_door_pass(door, fd, gz_connection_identity(fd), sent->bytes, sent->size, now_ns);
+}
+
+/* Come in and send @p topic. @return whether that passes */
+static bool come_with(int fd, const char *topic, int64_t now_ns)
+{
+	struct sent sent = { 0 };
+	add_greeting(&sent);
+	add_subscription(&sent, topic);
+	return enter(fd, now_ns) && pass(fd, &sent, now_ns);
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	return gz_door_create(&door) == GZ_OK ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	gz_door_destroy(&door);
+	gz_door_destroy(&door);
+	return door != NULL;
+}
+
+/* The frames of @p sent, read in pieces. @return how many; the last one in @p out_last, with its
+ * topic in @p topic */
+static int read_frames(const struct sent *sent, size_t piece, struct gz_zmtp_frame *out_last,
+		       char topic[GZ_ZMTP_TOPIC_SIZE])
+{
+	struct gz_zmtp_input input = { 0 };
+	int count = 0;
+	for (size_t at = 0; at < sent->size; at += piece) {
+		const unsigned char *bytes = sent->bytes + at;
+		size_t size = sent->size - at < piece ? sent->size - at : piece;
+		while (gz_zmtp_next(&input, &bytes, &size, out_last))
+			count++;
+	}
+	if (out_last->kind == GZ_ZMTP_SUBSCRIBE) {
+		assert_true(out_last->topic_size < GZ_ZMTP_TOPIC_SIZE);
+		memcpy(topic, out_last->topic, (size_t)out_last->topic_size);
+		topic[out_last->topic_size] = '\0';
+	}
+	return count;
+}
+
+static void zmtp_frames_are_found_in_any_pieces(void **state)
+{
+	(void)state;
+	struct sent messages = { 0 }, commands = { 0 };
+	add_greeting(&messages);
+	add_frame(&messages, 0, "", "", 0);
+	add_frame(&messages, 1, "", "x", 1);
+	add_subscription(&messages, "gaze.");
+	add_greeting(&commands);
+	add_frame(&commands, 4,
+		  "\x06"
+		  "CANCEL",
+		  "gaze.", 5);
+	add_frame(&commands, 4, "\x09SUBSCRIBE", "gaze.", 5);
+	for (size_t piece = 1; piece < 120; piece++) {
+		struct gz_zmtp_frame frame = { 0 };
+		char topic[GZ_ZMTP_TOPIC_SIZE] = "";
+		assert_int_equal(read_frames(&messages, piece, &frame, topic), 4);
+		assert_int_equal(frame.size, 2 + 6);
+		assert_string_equal(topic, "gaze.");
+		topic[0] = '\0';
+		assert_int_equal(read_frames(&commands, piece, &frame, topic), 3);
+		assert_int_equal(frame.size, 2 + 15);
+		assert_string_equal(topic, "gaze.");
+	}
+}
+
+static void zmtp_older_versions_are_told_apart(void **state)
+{
+	(void)state;
+	static const unsigned char version_2[] = { 0xff, 0, 0, 0, 0, 0, 0,   0,   1,   0x7f, 1,
+						   2,    0, 0, 0, 5, 1, 'g', 'a', 'z', 'e' };
+	static const unsigned char version_1[] = { 1, 0, 6, 0, 1, 'g', 'a', 'z', 'e' };
+	struct sent sent = { 0 };
+	struct gz_zmtp_frame frame = { 0 };
+	char topic[GZ_ZMTP_TOPIC_SIZE] = "";
+	add_bytes(&sent, version_2, sizeof version_2);
+	assert_int_equal(read_frames(&sent, 3, &frame, topic), 2);
+	assert_string_equal(topic, "gaze");
+	sent.size = 0;
+	add_bytes(&sent, version_1, sizeof version_1);
+	read_frames(&sent, 3, &frame, topic);
+	assert_int_equal(frame.kind, GZ_ZMTP_UNKNOWN);
+	assert_int_equal(frame.size, 3);
+}
+
+static void door_readers_of_what_the_daemon_sends_all_come_in(void **state)
+{
+	(void)state;
+	enum { READERS = 64 };
+	static const char *const topics[] = { "",           "gaze.",         "gaze.3d.01.",
+					      "pupil.0.3d", "surfaces.left", "fixations",
+					      "status",     "notify." };
+	int fds[READERS];
+	gz_door_know(door, "surfaces.left");
+	for (int i = 0; i < READERS; i++) {
+		fds[i] = open_connection();
+		assert_true(come_with(fds[i], topics[i % 8], 0));
+		for (int t = 0; t < 8; t++) {
+			struct sent sent = { 0 };
+			add_subscription(&sent, topics[t]);
+			assert_true(pass(fds[i], &sent, 0));
+		}
+	}
+	for (int i = 0; i < READERS; i++)
+		close(fds[i]);
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_MANY), 0);
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 0);
+}
+
+static void fill_topic(char topic[201])
+{
+	memset(topic, 'x', 200);
+	topic[200] = '\0';
+}
+
+/* Strange topics fill the tree. Those of connections that have ended count on for a while; a reader
+ * of gaze comes in meanwhile. */
+static void door_strange_topics_of_all_readers_are_limited(void **state)
+{
+	(void)state;
+	enum { ENOUGH = GZ_DOOR_STRANGE / 201 };
+	int fds[ENOUGH + 1], reader = open_connection();
+	char topic[201];
+	fill_topic(topic);
+	for (int i = 0; i <= ENOUGH; i++) {
+		fds[i] = open_connection();
+		assert_int_equal(come_with(fds[i], topic, 0), i < ENOUGH);
+	}
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 1);
+	assert_true(come_with(reader, "gaze.", 0));
+	for (int i = 0; i < ENOUGH; i++)
+		gz_door_leave(door, fds[i], 0);
+	assert_false(come_with(fds[0], topic, 0));
+	assert_true(come_with(fds[0], topic, GZ_NS_PER_S));
+	/* A connection that ended unnoticed is found. */
+	for (int i = 1; i < ENOUGH; i++)
+		assert_true(come_with(fds[i], topic, 2 * GZ_NS_PER_S));
+	for (int i = 0; i < ENOUGH; i++)
+		close(fds[i]);
+	assert_false(come_with(fds[ENOUGH], topic, 2 * GZ_NS_PER_S));
+	assert_true(come_with(fds[ENOUGH], topic, 3 * GZ_NS_PER_S));
+	close(fds[ENOUGH]);
+	close(reader);
+}
+
+static void door_reader_with_many_strange_topics_is_refused(void **state)
+{
+	(void)state;
+	int fd = open_connection();
+	char topic[201];
+	struct sent sent = { 0 };
+	fill_topic(topic);
+	assert_true(come_with(fd, topic, 0));
+	for (int i = 0; i < GZ_DOOR_STRANGE_EACH / 201; i++)
+		add_subscription(&sent, topic);
+	assert_false(pass(fd, &sent, 0));
+	/* What was refused is nowhere. */
+	assert_true(come_with(fd, topic, 0));
+	assert_true(pass(fd, &(struct sent) { 0 }, 0));
+	close(fd);
+}
+
+/* Bytes of a version whose frames are not told apart. */
+static void door_reader_of_an_old_version_has_strange_bytes(void **state)
+{
+	(void)state;
+	int fd = open_connection();
+	struct sent sent = { .size = GZ_DOOR_STRANGE_EACH, .bytes = { 1 } };
+	assert_true(enter(fd, 0));
+	assert_true(pass(fd, &sent, 0));
+	sent.size = 1;
+	assert_false(pass(fd, &sent, 0));
+	close(fd);
+}
+
+/* Each message takes time, whatever it says. */
+static void door_flood_of_messages_is_ended(void **state)
+{
+	(void)state;
+	enum { MESSAGES = 100, FRAME = 2 + 5, ENOUGH = GZ_DOOR_SHARED_COST / 100 / 32 };
+	int flooding = open_connection(), reader = open_connection();
+	struct sent sent = { 0 };
+	int passed = 0;
+	for (int i = 0; i < MESSAGES; i++)
+		add_frame(&sent, 0, "", "\0gaze", 5);
+	assert_true(come_with(flooding, "gaze", 0));
+	while (pass(flooding, &sent, 0) && passed <= ENOUGH &&
+	       gz_door_refused(door, GZ_QUOTA_TOO_LARGE) == 0)
+		passed++;
+	assert_in_range(passed, 1, ENOUGH);
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 1);
+	assert_true(come_with(reader, "gaze", 0));
+	assert_true(come_with(flooding, "gaze", GZ_NS_PER_S));
+	assert_true(pass(flooding, &sent, GZ_NS_PER_S));
+	close(flooding);
+	close(reader);
+}
+
+static void door_few_connections_come_in_a_second(void **state)
+{
+	(void)state;
+	int fd = open_connection(), entered = 0;
+	while (entered < 2000 && enter(fd, 0))
+		entered++;
+	assert_in_range(entered, 256, GZ_DOOR_NODES / GZ_DOOR_KNOWN_NODES);
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_MANY), 1);
+	assert_true(enter(fd, GZ_NS_PER_S));
+	/* The more there is to walk, the fewer. */
+	char topic[201];
+	struct sent sent = { 0 };
+	int after = 0;
+	fill_topic(topic);
+	add_greeting(&sent);
+	add_subscription(&sent, topic);
+	add_subscription(&sent, topic);
+	while (after < 2000 && enter(fd, 10 * GZ_NS_PER_S)) {
+		pass(fd, &sent, 10 * GZ_NS_PER_S);
+		after++;
+	}
+	assert_in_range(after, entered / 4, entered / 2);
+	close(fd);
+}
+
+/* Whether the connection has been ended by shutdown(). */
+static bool is_ended(int fd)
+{
+	char byte;
+	return recvfrom(fd, &byte, 1, MSG_DONTWAIT, NULL, NULL) == 0;
+}
+
+static void door_full_house_ends_the_least_useful(void **state)
+{
+	(void)state;
+	static int ours[GZ_DOOR_CONNECTIONS + 3], theirs[GZ_DOOR_CONNECTIONS + 3];
+	const int64_t old_ns = GZ_DOOR_NEW_MS * GZ_NS_PER_MS;
+	const int64_t calm_ns = (GZ_DOOR_CALM_MS + 2 * GZ_DOOR_NEW_MS) * GZ_NS_PER_MS;
+	for (int i = 0; i < GZ_DOOR_CONNECTIONS + 3; i++) {
+		int fds[2];
+		assert_int_equal(
+			socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds), 0);
+		ours[i] = fds[0];
+		theirs[i] = fds[1];
+	}
+	for (int i = 0; i < GZ_DOOR_CONNECTIONS; i++)
+		assert_true(i == 1 ? enter(ours[i], 1) : come_with(ours[i], "gaze.", i > 0));
+	/* One that has subscribed to nothing, then one that does not read. */
+	char bytes[32768] = { 0 };
+	assert_int_equal(send(ours[2], bytes, sizeof bytes, 0), sizeof bytes);
+	assert_true(come_with(ours[GZ_DOOR_CONNECTIONS], "gaze.", old_ns));
+	assert_true(is_ended(ours[1]));
+	assert_true(come_with(ours[GZ_DOOR_CONNECTIONS + 1], "gaze.", 2 * old_ns));
+	assert_true(is_ended(ours[2]));
+	/* The oldest of those that came shortly before, while others want to come. */
+	assert_true(come_with(ours[GZ_DOOR_CONNECTIONS + 2], "gaze.", 3 * old_ns));
+	assert_false(is_ended(ours[0]));
+	assert_true(is_ended(ours[3]));
+	assert_false(come_with(ours[1], "gaze.", 3 * old_ns + calm_ns));
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_MANY), 4);
+	for (int i = 0; i < GZ_DOOR_CONNECTIONS + 3; i++) {
+		close(ours[i]);
+		close(theirs[i]);
+	}
+}
+
+/* A descriptor may be another file by the time its bytes come. */
+static void door_asks_nothing_of_other_connections(void **state)
+{
+	(void)state;
+	int fd = open_connection();
+	struct sent sent = { .size = 8192 };
+	assert_true(pass(fd, &sent, 0));
+	assert_true(gz_door_pass(door, -1, 1, sent.bytes, sent.size, 0));
+	assert_true(gz_door_pass(door, GZ_QUOTA_DESCRIPTORS, 1, sent.bytes, sent.size, 0));
+	assert_true(enter(fd, 0));
+	assert_true(
+		gz_door_pass(door, fd, gz_connection_identity(fd) + 1, sent.bytes, sent.size, 0));
+	assert_false(gz_door_enter(door, GZ_QUOTA_DESCRIPTORS, 1, 0));
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 0);
+	gz_door_leave(door, -1, 0);
+	close(fd);
+}
+
+#define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
+
+TEST_SUITE(door)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(zmtp_frames_are_found_in_any_pieces),
+		TEST(zmtp_older_versions_are_told_apart),
+		TEST(door_readers_of_what_the_daemon_sends_all_come_in),
+		TEST(door_strange_topics_of_all_readers_are_limited),
+		TEST(door_reader_with_many_strange_topics_is_refused),
+		TEST(door_reader_of_an_old_version_has_strange_bytes),
+		TEST(door_flood_of_messages_is_ended),
+		TEST(door_few_connections_come_in_a_second),
+		TEST(door_full_house_ends_the_least_useful),
+		TEST(door_asks_nothing_of_other_connections),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
