@@ -57,13 +57,12 @@ static bool collect(int file, char *text, size_t room, size_t *size)
 	return n > 0;
 }
 
-/* Wait for output. Returns false when both pipes are closed; fails at the deadline. */
-static bool collect_both(struct program *program, int64_t deadline_ns)
+bool program_collect(struct program *program, int wait_ms)
 {
 	struct pollfd files[] = { { program->out, POLLIN, 0 }, { program->err, POLLIN, 0 } };
 	if (program->out < 0 && program->err < 0)
 		return false;
-	poll(files, 2, 100);
+	poll(files, 2, wait_ms);
 	if (files[0].revents && !collect(program->out, program->out_text, sizeof program->out_text,
 					 &program->out_size)) {
 		close(program->out);
@@ -74,6 +73,14 @@ static bool collect_both(struct program *program, int64_t deadline_ns)
 		close(program->err);
 		program->err = -1;
 	}
+	return true;
+}
+
+/* Wait for output. Returns false when both pipes are closed; fails at the deadline. */
+static bool collect_both(struct program *program, int64_t deadline_ns)
+{
+	if (!program_collect(program, 100))
+		return false;
 	if (gz_clock_now_ns() > deadline_ns) {
 		program_kill(program);
 		fail_msg("the program goes on; it printed:\n%s\n%s", program->out_text,

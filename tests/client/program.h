@@ -5,6 +5,7 @@
 #ifndef GZ_TESTS_CLIENT_PROGRAM_H
 #define GZ_TESTS_CLIENT_PROGRAM_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <sys/types.h>
 
@@ -19,6 +20,9 @@ struct program {
 
 /** Start @p arguments[0] with @p arguments, NULL-terminated. Asserts. */
 void program_start(struct program *program, const char *const *arguments);
+
+/** Collect the output that comes within @p wait_ms. @return false once both pipes are closed */
+bool program_collect(struct program *program, int wait_ms);
 
 /** Collect output until @p text appears on stdout or stderr. Asserts that it does. */
 void program_wait_for(struct program *program, const char *text);
