@@ -8,11 +8,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "render/light/environment.h"
 #include "render/plan/plan.h"
 #include "render/raycast/cpu/cast.h"
-#include "render/raycast/shared/lighting.h"
 #include "render/surface/cpu/embree.h"
+#include "render/surface/shared/surface_frame.h"
 
 /** Rays of a tile, which are one packet. */
 #define GZ_SURFACE_RAYS 16
@@ -48,41 +47,13 @@ struct gz_surface_field {
 	float step_mm;          /**< the finest voxel edge */
 };
 
-/** The surroundings: struct gz_environment for the kernels. Places and lengths are in mm. */
-struct gz_surface_environment {
-	enum gz_surroundings kind; /**< NONE: everything is the horizon's colour */
-	const uint32_t *texels;    /**< CUBE: as in struct gz_cube */
-	int edge;
-	bool floor; /**< SKY: there is one */
-	/** Unit vectors. SKY: up, and two along the floor. CUBE: right, front and up. */
-	float axes[3][3];
-	float floor_mm; /**< height of the floor */
-	float tiles_per_mm, fade_per_mm;
-	float horizon[3], zenith[3];
-	float bright[3], dark[3]; /**< of tiles, lit */
-};
-
 /** What all rays of a frame share. Lengths and places are in mm, in the frame of struct gz_mesh. */
 struct gz_surface_cast {
 	RTCScene tree;
 	const struct gz_surface_mesh *meshes; /**< by the tree's numbers of geometries */
 	unsigned mesh_count;
 	struct gz_surface_field field;
-	/** The ray of pixel (x, y), as in struct gz_ray_frame. */
-	float origin00[3], origin_dx[3], origin_dy[3];
-	float direction00[3], direction_dx[3], direction_dy[3];
-	bool clipped;
-	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
-	struct gz_cast_light light;            /**< without occlusion */
-	bool shadows;
-	float lift;          /**< how far above a surface its shadow rays begin */
-	uint32_t background; /**< as a pixel */
-	struct gz_surface_environment around;
-	int bounces;              /**< surfaces of glass that a ray meets at most; 0: no glass */
-	float refractive_index;   /**< of glass */
-	float least_reflection;   /**< share that glass reflects along its normal */
-	float absorbed_per_mm[3]; /**< by glass: log2 of what is left, 0 or less */
-	float world_per_mm;
+	struct gz_surface_frame frame;
 };
 
 /** The rays of a tile. */

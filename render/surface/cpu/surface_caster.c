@@ -8,7 +8,6 @@
 
 #include "base/clock.h"
 #include "base/workers.h"
-#include "render/light/cube.h"
 #include "render/mesh/isosurface.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cpu_raycaster.h"
@@ -27,26 +26,8 @@ enum { TILES_A_PART = 16 };
  * faster to follow each by itself. */
 enum { COHERENT_SPACING = 2 };
 
-/* Most vertices and triangles of a mesh: kernels count their numbers in 31 bits. */
-#define ELEMENTS_MAX ((size_t)INT32_MAX / 3)
-
-/* How far above a surface its shadow rays begin, as a share of the distances in the picture.
- * Chosen: 40 times the error of places in single precision. */
-#define LIFT_SHARE 2.5e-6
-
-/* Least colour of glass, so that its logarithm is finite. Chosen: no pixel shows less. */
-#define BLACKEST 1e-6
-
 /* Planes that one casting can fill. */
 enum picture_plane { PLANE_COLOURS, PLANE_DEPTH, PLANE_IDS, PLANE_COUNT };
-
-/* One object, and the mesh that was made for it. */
-struct surface {
-	struct gz_object object;
-	struct gz_mesh made; /* of the object's volume */
-	double isovalue;     /* of it */
-	bool current;        /* it is made */
-};
 
 /* The volume whose surface rays find in its voxels. */
 struct field {
@@ -61,17 +42,13 @@ struct gz_surface_caster {
 	const struct gz_log *log;
 	struct gz_workers *workers;
 	const struct gz_surface_kernel *kernel;
-	struct surface *surfaces;
-	struct gz_mesh *shown; /* the meshes in the tree; borrowed */
-	struct gz_surface_mesh *meshes;
-	size_t surface_count;
-	double world_mm; /* mm of a world unit */
+	struct gz_surface_meshes meshes;
+	struct gz_surface_mesh *listed; /* as kernels read them */
 	struct gz_surface_tree tree;
 	bool tree_current;
 	int source; /* enum gz_surface_source: what the tree was made for */
 	struct field field;
-	struct gz_cube cube;          /* the surroundings' pictures, if they are wanted */
-	char cube_path[GZ_PATH_SIZE]; /* their folder */
+	struct gz_surface_cube cube;
 	struct gz_lattices lattices[PLANE_COUNT];
 	char description[64];
 };
@@ -134,7 +111,7 @@ enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
 	struct gz_surface_caster *caster = calloc(1, sizeof *caster);
 	if (!caster)
 		return GZ_ERR_NO_MEM;
-	caster->log = log;
+	caster->log = caster->meshes.log = log;
 	const enum gz_result result = start_surface_workers(caster, params ? params : &defaults);
 	if (result != GZ_OK) {
 		gz_surface_caster_destroy(&caster);
@@ -144,143 +121,42 @@ enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
 	return GZ_OK;
 }
 
-static void free_surfaces(struct gz_surface_caster *caster)
-{
-	for (size_t i = 0; i < caster->surface_count; i++)
-		gz_mesh_free(&caster->surfaces[i].made);
-	free(caster->surfaces);
-	free(caster->shown);
-	free(caster->meshes);
-	caster->surfaces = NULL;
-	caster->shown = NULL;
-	caster->meshes = NULL;
-	caster->surface_count = 0;
-}
-
-static enum gz_result check_surface_object(const struct gz_surface_caster *caster,
-					   const struct gz_object *object)
-{
-	if (!object->volume) {
-		gz_err(caster->log, "isosurface shows volumes and meshes; object %u is neither",
-		       (unsigned)object->id);
-		return GZ_ERR_UNSUPPORTED;
-	}
-	if (!object->mesh && object->volume->bricks) {
-		gz_err(caster->log, "isosurface does not show volumes stored in bricks; show the "
-				    "file that they were made from, or take the technique raycast");
-		return GZ_ERR_UNSUPPORTED;
-	}
-	return GZ_OK;
-}
-
-/* The longest edge of a volume's box, mm. */
-static double world_mm_of(const struct gz_volume *volume)
-{
-	double half[3];
-	gz_volume_half_extent(volume, half);
-	return volume->dims[0] * volume->spacing[0] / (2 * half[0]);
-}
-
-/* Take what is already made for the same data from the present list. */
-static void take_made(struct gz_surface_caster *caster, struct surface *surface)
-{
-	for (size_t i = 0; i < caster->surface_count; i++) {
-		struct surface *old = &caster->surfaces[i];
-		if (!old->current || old->object.volume != surface->object.volume ||
-		    old->object.data_revision != surface->object.data_revision ||
-		    old->object.mesh != surface->object.mesh)
-			continue;
-		const struct gz_object object = surface->object;
-		*surface = *old;
-		surface->object = object;
-		*old = (struct surface) { 0 };
-		return;
-	}
-}
-
 enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
 				      const struct gz_object *objects, size_t count)
 {
-	enum gz_result result = count > 0 ? GZ_OK : GZ_ERR_INVAL;
-	for (size_t i = 0; i < count && result == GZ_OK; i++)
-		result = check_surface_object(caster, &objects[i]);
-	if (result != GZ_OK)
-		return result;
-	struct surface *surfaces = calloc(count, sizeof *surfaces);
-	struct gz_mesh *shown = calloc(count, sizeof *shown);
-	struct gz_surface_mesh *meshes = calloc(count, sizeof *meshes);
-	if (!surfaces || !shown || !meshes) {
-		free(surfaces);
-		free(shown);
-		free(meshes);
+	struct gz_surface_mesh *listed = calloc(count > 0 ? count : 1, sizeof *listed);
+	if (!listed)
 		return GZ_ERR_NO_MEM;
-	}
-	for (size_t i = 0; i < count; i++) {
-		surfaces[i].object = objects[i];
-		take_made(caster, &surfaces[i]);
-	}
-	free_surfaces(caster);
-	caster->surfaces = surfaces;
-	caster->shown = shown;
-	caster->meshes = meshes;
-	caster->surface_count = count;
-	caster->tree_current = false;
-	caster->world_mm = world_mm_of(objects[0].volume);
-	return GZ_OK;
-}
-
-/* Make the mesh of an object if it is not there. */
-static enum gz_result make_surface(struct gz_surface_caster *caster, struct surface *surface,
-				   double isovalue)
-{
-	if (surface->object.mesh || caster->source == GZ_SURFACE_VOXELS ||
-	    (surface->current && surface->isovalue == isovalue))
-		return GZ_OK;
-	const struct gz_isosurface_request request = {
-		.volume = surface->object.volume,
-		.isovalue = isovalue,
-	};
-	caster->tree_current = false;
-	surface->current = false;
-	gz_mesh_free(&surface->made);
-	const enum gz_result result =
-		gz_isosurface_make(&request, caster->workers, caster->log, &surface->made);
-	if (result != GZ_OK)
+	const enum gz_result result = gz_surface_meshes_show(&caster->meshes, objects, count);
+	if (result != GZ_OK) {
+		free(listed);
 		return result;
-	surface->isovalue = isovalue;
-	surface->current = true;
-	return GZ_OK;
-}
-
-static enum gz_result list_mesh(struct gz_surface_caster *caster, size_t index)
-{
-	static const struct gz_mesh none = { 0 };
-	const struct surface *surface = &caster->surfaces[index];
-	const struct gz_mesh *made = caster->source == GZ_SURFACE_VOXELS ? &none : &surface->made;
-	const struct gz_mesh *mesh = surface->object.mesh ? surface->object.mesh : made;
-	if (mesh->vertex_count > ELEMENTS_MAX || mesh->triangle_count > ELEMENTS_MAX) {
-		gz_err(caster->log,
-		       "isosurface draws at most %zu vertices and triangles of an object, not %zu "
-		       "and %zu; write the mesh to a file instead (gazeview --write-mesh)",
-		       ELEMENTS_MAX, mesh->vertex_count, mesh->triangle_count);
-		return GZ_ERR_FULL;
 	}
-	caster->shown[index] = *mesh;
-	caster->meshes[index] = (struct gz_surface_mesh) {
-		.positions = (const float *)mesh->positions,
-		.normals = (const float *)mesh->normals,
-		.triangles = (const uint32_t *)mesh->triangles,
-		.id = surface->object.id,
-	};
+	free(caster->listed);
+	caster->listed = listed;
+	caster->tree_current = false;
 	return GZ_OK;
 }
 
-/* The first object that is a volume, by its number; surface_count if none is. All volumes are one.
+/* List the meshes as kernels read them. */
+static void list_meshes(struct gz_surface_caster *caster)
+{
+	const struct gz_surface_meshes *meshes = &caster->meshes;
+	for (size_t i = 0; i < meshes->count; i++)
+		caster->listed[i] = (struct gz_surface_mesh) {
+			.positions = (const float *)meshes->shown[i].positions,
+			.normals = (const float *)meshes->shown[i].normals,
+			.triangles = (const uint32_t *)meshes->shown[i].triangles,
+			.id = meshes->items[i].object.id,
+		};
+}
+
+/* The first object that is a volume, by its number; meshes.count if none is. All volumes are one.
  */
 static size_t find_volume_surface(const struct gz_surface_caster *caster)
 {
 	size_t i = 0;
-	while (i < caster->surface_count && caster->surfaces[i].object.mesh)
+	while (i < caster->meshes.count && caster->meshes.items[i].object.mesh)
 		i++;
 	return i;
 }
@@ -329,9 +205,9 @@ static enum gz_result prepare_field(struct gz_surface_caster *caster, double iso
 {
 	const size_t index = find_volume_surface(caster);
 	struct field *field = &caster->field;
-	if (index == caster->surface_count || caster->source != GZ_SURFACE_VOXELS)
+	if (index == caster->meshes.count || caster->source != GZ_SURFACE_VOXELS)
 		return GZ_OK;
-	const enum gz_result result = build_field(caster, &caster->surfaces[index].object);
+	const enum gz_result result = build_field(caster, &caster->meshes.items[index].object);
 	if (result != GZ_OK)
 		return result;
 	if (field->current && field->isovalue == isovalue)
@@ -348,21 +224,21 @@ static enum gz_result prepare_field(struct gz_surface_caster *caster, double iso
 static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
 				       const struct gz_surface_look *look, double *out_ms)
 {
-	const double isovalue = look->isovalue;
+	bool new_meshes = false;
 	*out_ms = 0;
-	caster->tree_current = caster->tree_current && caster->source == look->source;
 	caster->source = look->source;
-	enum gz_result result = prepare_field(caster, isovalue);
+	enum gz_result result = prepare_field(caster, look->isovalue);
 	const int64_t start_ns = gz_clock_now_ns();
-	for (size_t i = 0; i < caster->surface_count && result == GZ_OK; i++)
-		result = make_surface(caster, &caster->surfaces[i], isovalue);
+	gz_surface_meshes_without_volumes(&caster->meshes, look->source == GZ_SURFACE_VOXELS);
+	if (result == GZ_OK)
+		result = gz_surface_meshes_make(&caster->meshes, look->isovalue, caster->workers,
+						&new_meshes);
+	caster->tree_current = caster->tree_current && caster->meshes.listed && !new_meshes;
 	if (result != GZ_OK || caster->tree_current)
 		return result;
 	const int64_t made_ns = gz_clock_now_ns();
-	for (size_t i = 0; i < caster->surface_count && result == GZ_OK; i++)
-		result = list_mesh(caster, i);
-	if (result == GZ_OK)
-		result = gz_surface_tree_build(&caster->tree, caster->shown, caster->surface_count);
+	list_meshes(caster);
+	result = gz_surface_tree_build(&caster->tree, caster->meshes.shown, caster->meshes.count);
 	if (result != GZ_OK)
 		return result;
 	caster->tree_current = true;
@@ -376,77 +252,17 @@ static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
 
 struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster)
 {
-	struct gz_surface_size size = { .tree_bytes = (size_t)caster->tree.bytes };
-	for (size_t i = 0; caster->tree_current && i < caster->surface_count; i++) {
-		const struct gz_mesh *made = &caster->surfaces[i].made;
-		size.triangles += caster->shown[i].triangle_count;
-		size.mesh_bytes +=
-			made->vertex_count * (sizeof made->positions[0] + sizeof made->normals[0]) +
-			made->triangle_count * sizeof made->triangles[0];
-	}
-	return size;
+	return (struct gz_surface_size) {
+		.triangles = gz_surface_meshes_triangles(&caster->meshes),
+		.mesh_bytes = gz_surface_meshes_bytes(&caster->meshes),
+		.tree_bytes = (size_t)caster->tree.bytes,
+	};
 }
 
-/* Meshes without a colour of their own have that of the settings. */
 static void colour_meshes(struct gz_surface_caster *caster, const struct gz_surface_look *look)
 {
-	for (size_t i = 0; i < caster->surface_count; i++) {
-		const float *own = caster->surfaces[i].object.colour;
-		for (int channel = 0; channel < 3; channel++)
-			caster->meshes[i].colour[channel] =
-				own ? own[channel] : (float)look->colour[channel];
-	}
-}
-
-static void fill_clip(const struct gz_surface_caster *caster, const struct gz_clip_box *clip,
-		      struct gz_surface_cast *cast)
-{
-	double half[3];
-	gz_volume_half_extent(caster->surfaces[0].object.volume, half);
-	for (int axis = 0; axis < 3; axis++) {
-		const double edge = 2 * half[axis] * caster->world_mm;
-		cast->clipped = cast->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;
-		cast->clip_least[axis] = (float)((clip->least[axis] - 0.5) * edge);
-		cast->clip_greatest[axis] = (float)((clip->greatest[axis] - 0.5) * edge);
-	}
-}
-
-static void fill_rays(const struct gz_surface_caster *caster, const struct gz_ray_frame *frame,
-		      struct gz_surface_cast *cast)
-{
-	double farthest = 1; /* world units from the centre */
-	for (int axis = 0; axis < 3; axis++) {
-		cast->origin00[axis] = (float)(frame->origin00[axis] * caster->world_mm);
-		cast->origin_dx[axis] = (float)(frame->origin_dx[axis] * caster->world_mm);
-		cast->origin_dy[axis] = (float)(frame->origin_dy[axis] * caster->world_mm);
-		cast->direction00[axis] = (float)frame->direction00[axis];
-		cast->direction_dx[axis] = (float)frame->direction_dx[axis];
-		cast->direction_dy[axis] = (float)frame->direction_dy[axis];
-		farthest = fmax(farthest, fabs(frame->origin00[axis]));
-	}
-	cast->lift = (float)(LIFT_SHARE * farthest * caster->world_mm);
-	cast->world_per_mm = (float)(1 / caster->world_mm);
-}
-
-static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_frame *frame,
-		      struct gz_surface_cast *cast)
-{
-	const struct gz_light *light = &rays->light;
-	double towards[3];
-	gz_light_direction(light, frame, towards);
-	cast->light = (struct gz_cast_light) {
-		.on = true,
-		.ambient = (float)light->ambient,
-		.diffuse = (float)light->diffuse,
-		.specular = (float)light->specular,
-		.shininess = (float)light->shininess,
-	};
-	cast->background = UINT32_C(0xFF000000);
-	for (int i = 0; i < 3; i++) {
-		cast->light.towards[i] = (float)towards[i];
-		cast->background |= (uint32_t)(rays->background[i] * 255 + 0.5) << (8 * i);
-	}
-	cast->shadows = rays->surface.shadows;
+	for (size_t i = 0; i < caster->meshes.count; i++)
+		gz_surface_colour(&caster->meshes.items[i], look, caster->listed[i].colour);
 }
 
 /* Put into the hits of all techniques what lies nearer. Surroundings lie behind everything, farther
@@ -462,74 +278,6 @@ static void merge_hits(const struct gz_surface_hits *own, enum gz_surroundings a
 			depth[k] = fminf(own->depth[k], behind);
 			pixels[k] = own->pixels[k];
 		}
-}
-
-static void fill_glass(const struct gz_surface_caster *caster, const struct gz_surface_look *look,
-		       struct gz_surface_cast *cast)
-{
-	const double root = (look->refractive_index - 1) / (look->refractive_index + 1);
-	cast->bounces = look->material == GZ_MATERIAL_GLASS ? look->bounces : 0;
-	cast->refractive_index = (float)look->refractive_index;
-	cast->least_reflection = (float)(root * root);
-	for (int i = 0; i < 3; i++)
-		cast->absorbed_per_mm[i] =
-			(float)(log2(fmax(look->colour[i], BLACKEST)) / caster->world_mm);
-}
-
-/* Read the pictures of the surroundings if they are wanted and others than those that are there. */
-static enum gz_result prepare_cube(struct gz_surface_caster *caster,
-				   const struct gz_environment *environment, double *prepare_ms)
-{
-	const bool wanted = environment->kind == GZ_SURROUNDINGS_CUBE && environment->cube_path[0];
-	if (caster->cube.edge && strcmp(environment->cube_path, caster->cube_path) != 0)
-		gz_cube_free(&caster->cube);
-	if (!wanted || caster->cube.edge)
-		return GZ_OK;
-	const int64_t start_ns = gz_clock_now_ns();
-	const enum gz_result result =
-		gz_cube_load(environment->cube_path, caster->log, &caster->cube);
-	if (result == GZ_OK)
-		memcpy(caster->cube_path, environment->cube_path, sizeof caster->cube_path);
-	*prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
-	return result;
-}
-
-/* After fill_look(), which knows the light. */
-static void fill_surroundings(const struct gz_surface_caster *caster,
-			      const struct gz_ray_params *rays, struct gz_surface_cast *cast)
-{
-	const struct gz_environment *environment = &rays->environment;
-	struct gz_surface_environment *around = &cast->around;
-	double axes[3][3], half[3], lowest = 0, overhead = 0;
-	const bool pictures = environment->kind == GZ_SURROUNDINGS_CUBE;
-	around->kind = pictures && !caster->cube.edge ? GZ_SURROUNDINGS_NONE
-						      : (enum gz_surroundings)environment->kind;
-	around->texels = caster->cube.texels;
-	around->edge = caster->cube.edge;
-	around->floor = environment->floor;
-	if (pictures)
-		gz_cube_axes(environment->up, axes);
-	else
-		gz_environment_axes(environment, axes);
-	gz_volume_half_extent(caster->surfaces[0].object.volume, half);
-	for (int axis = 0; axis < 3; axis++) {
-		lowest -= fabs(axes[0][axis]) * half[axis] * caster->world_mm;
-		overhead += axes[0][axis] * (double)cast->light.towards[axis];
-		for (int i = 0; i < 3; i++)
-			around->axes[i][axis] = (float)axes[i][axis];
-	}
-	const double lamp = rays->light.ambient + rays->light.diffuse * fmax(overhead, 0);
-	around->floor_mm = (float)lowest;
-	around->tiles_per_mm = (float)(1 / (environment->tile * caster->world_mm));
-	around->fade_per_mm = (float)(1 / ((double)GZ_FLOOR_HALF * caster->world_mm));
-	for (int i = 0; i < 3; i++) {
-		around->horizon[i] =
-			(float)(around->kind == GZ_SURROUNDINGS_SKY ? environment->horizon[i]
-								    : rays->background[i]);
-		around->zenith[i] = (float)environment->zenith[i];
-		around->bright[i] = (float)(environment->bright[i] * lamp);
-		around->dark[i] = (float)(environment->dark[i] * lamp);
-	}
 }
 
 /* The voxels of a field, as sample_trilinear() reads them, and its cells, as look_up_cell() does.
@@ -557,7 +305,7 @@ static void fill_field(const struct gz_surface_caster *caster, struct gz_surface
 {
 	const size_t index = find_volume_surface(caster);
 	struct gz_surface_field *field = &cast->field;
-	field->on = caster->source == GZ_SURFACE_VOXELS && index < caster->surface_count;
+	field->on = caster->source == GZ_SURFACE_VOXELS && index < caster->meshes.count;
 	if (!field->on)
 		return;
 	const struct gz_volume *volume = caster->field.volume;
@@ -567,7 +315,7 @@ static void fill_field(const struct gz_surface_caster *caster, struct gz_surface
 	field->type = volume->type;
 	field->value = (float)stored_isovalue(volume, caster->field.isovalue);
 	for (int axis = 0; axis < 3; axis++) {
-		const double edge = 2 * half[axis] * caster->world_mm / volume->dims[axis];
+		const double edge = 2 * half[axis] * caster->meshes.world_mm / volume->dims[axis];
 		field->voxels_per_mm[axis] = (float)(1 / edge);
 		finest = fmin(finest, edge);
 	}
@@ -597,7 +345,7 @@ static void cast_surface_part(void *user, size_t part, int worker)
 		}
 		job->tile(&job->cast, &rays, &hits);
 		if (job->hits)
-			merge_hits(&hits, job->cast.around.kind, i, job->hits);
+			merge_hits(&hits, job->cast.frame.around.kind, i, job->hits);
 		memcpy(depth, hits.depth, sizeof depth);
 		const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
 		for (int plane = 0; plane < PLANE_COUNT; plane++)
@@ -656,7 +404,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 		.lattices = caster->lattices,
 	};
 	struct gz_ray_frame frame;
-	if (caster->surface_count < 1 || !gz_ray_params_valid(shot->rays) || plan->layer_count < 1)
+	if (caster->meshes.count < 1 || !gz_ray_params_valid(shot->rays) || plan->layer_count < 1)
 		return GZ_ERR_INVAL;
 	enum gz_result result =
 		gz_camera_rays(shot->camera, plan->view.width, plan->view.height, &frame);
@@ -666,20 +414,17 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	if (result == GZ_OK)
 		result = prepare_surfaces(caster, &shot->rays->surface, &prepare_ms);
 	if (result == GZ_OK)
-		result = prepare_cube(caster, &shot->rays->environment, &prepare_ms);
+		result = gz_surface_cube_prepare(&caster->cube, &shot->rays->environment,
+						 caster->log, &prepare_ms);
 	if (result != GZ_OK)
 		return result;
 	const int64_t prepared_ns = gz_clock_now_ns();
 	job.cast.tree = caster->tree.scene;
-	job.cast.meshes = caster->meshes;
-	job.cast.mesh_count = (unsigned)caster->surface_count;
 	colour_meshes(caster, &shot->rays->surface);
+	job.cast.meshes = caster->listed;
+	job.cast.mesh_count = (unsigned)caster->meshes.count;
 	fill_field(caster, &job.cast);
-	fill_clip(caster, &shot->rays->clip, &job.cast);
-	fill_rays(caster, &frame, &job.cast);
-	fill_look(shot->rays, &frame, &job.cast);
-	fill_glass(caster, &shot->rays->surface, &job.cast);
-	fill_surroundings(caster, shot->rays, &job.cast);
+	job.cast.frame = gz_surface_frame_make(&caster->meshes, &caster->cube, shot->rays, &frame);
 	gz_workers_run(caster->workers, cast_surface_part, &job,
 		       (plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
 	const int64_t cast_ns = gz_clock_now_ns();
@@ -708,9 +453,10 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 		return;
 	gz_workers_destroy(&self->workers);
 	gz_surface_tree_close(&self->tree);
-	free_surfaces(self);
-	gz_cube_free(&self->cube);
+	gz_surface_meshes_free(&self->meshes);
 	gz_macrocells_free(&self->field.cells);
+	gz_surface_cube_free(&self->cube);
+	free(self->listed);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);
 	free(self);

@@ -11,8 +11,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/picture/image.h"
-#include "render/picture/plane.h"
-#include "render/raycast/shared/ray_params.h"
+#include "render/surface/shared/surface_shot.h"
 #include "render/technique/technique.h"
 
 /** Surfaces, their tree, and the threads that cast. One thread at a time may use it. */
@@ -48,21 +47,6 @@ enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
  */
 enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
 				      const struct gz_object *objects, size_t count);
-
-/** Planes beside the colours of a picture; NULL: not wanted. */
-struct gz_surface_planes {
-	/** GZ_PLANE_VALUE: distance from where the ray begins, along the ray, world units. */
-	struct gz_plane *depth;
-	struct gz_plane *ids; /**< GZ_PLANE_ID: numbers of objects */
-};
-
-/** One picture to cast. All pointers are borrowed. */
-struct gz_surface_shot {
-	const struct gz_camera *camera;
-	const struct gz_ray_params *rays; /**< background, light, clip box and surface count */
-	const struct gz_plan *plan;
-	struct gz_ray_hits *hits; /**< takes what lies nearer than what it has; NULL: not wanted */
-};
 
 /**
  * Cast a picture of the plan's size and write every pixel. Makes the surfaces first if the isovalue

@@ -55,14 +55,14 @@ SIMD struct split split_rays(const struct gz_surface_cast *cast, const vf direct
 			     const vf normal[3], vm inside)
 {
 	struct split split;
-	const vf one = vf_set(1), index = vf_set(cast->refractive_index);
+	const vf one = vf_set(1), index = vf_set(cast->frame.refractive_index);
 	const vf ratio = vf_select(inside, index, one / index);
 	const vf cosine = clamp_lanes(vf_set(0) - dot_lanes(direction, normal), vf_set(0), one);
 	const vf rest = one - ratio * ratio * (one - cosine * cosine);
 	const vf beyond = vf_sqrt(vf_max(rest, vf_set(0)));
 	const vf outside = one - vf_select(inside, beyond, cosine);
 	const vf power2 = outside * outside;
-	const vf least = vf_set(cast->least_reflection);
+	const vf least = vf_set(cast->frame.least_reflection);
 	const vf schlick = vf_fma((one - least) * power2 * power2, outside, least);
 	split.share = vf_select(vf_less(rest, vf_set(0)), one, schlick);
 	for (int axis = 0; axis < 3; axis++) {
@@ -82,7 +82,7 @@ SIMD void absorb(const struct gz_surface_cast *cast, vf distance, struct lanes l
 		return;
 	for (int i = 0; i < 3; i++) {
 		float *weight = glass->weight[i] + lanes.first;
-		const vf left = exp2_negative(distance * vf_set(cast->absorbed_per_mm[i]));
+		const vf left = exp2_negative(distance * vf_set(cast->frame.absorbed_per_mm[i]));
 		put_lanes(inside, vf_load(weight) * left, weight);
 	}
 }
@@ -112,7 +112,7 @@ SIMD void bend_lanes(const struct gz_surface_cast *cast, unsigned number, struct
 	for (int axis = 0; axis < 3; axis++)
 		other[axis] = vf_select(mirrors, split.refracted[axis], split.reflected[axis]);
 	gather_surroundings(cast, at.place, other, vf_set(1) - onward, lanes, glass);
-	const vf lift = vf_select(mirrors, vf_set(cast->lift), vf_set(-cast->lift));
+	const vf lift = vf_select(mirrors, vf_set(cast->frame.lift), vf_set(-cast->frame.lift));
 	for (int axis = 0; axis < 3; axis++) {
 		const vf turned = vf_select(mirrors, split.reflected[axis], split.refracted[axis]);
 		put_lanes(lanes.mask, turned, directions[axis] + first);
@@ -133,7 +133,7 @@ SIMD void relaunch_lanes(const struct gz_surface_cast *cast, int first, struct p
 {
 	struct RTCRay16 *ray = &packet->hit.ray;
 	vf from = vf_set(0), to = vf_set(INFINITY);
-	if (cast->clipped) {
+	if (cast->frame.clipped) {
 		const struct ways way = load_ways(ray, first);
 		(void)clip_lanes(cast, way.origin, way.direction, &from, &to);
 	}
@@ -184,7 +184,7 @@ SIMD void note_first_hits(const struct gz_surface_cast *cast, int first,
 	const vi number = vi_load(packet->hit.hit.geomID + first);
 	const vm met =
 		vm_and(load_mask(packet->valid + first), vi_nonzero(vi_add(number, vi_set(1))));
-	const vf depth = vf_load(packet->hit.ray.tfar + first) * vf_set(cast->world_per_mm);
+	const vf depth = vf_load(packet->hit.ray.tfar + first) * vf_set(cast->frame.world_per_mm);
 	vi id = vi_set(0);
 	for (unsigned i = 0; i < cast->mesh_count; i++) {
 		const vm mask = vm_but(met, vi_nonzero(vi_add(number, vi_set(-(int32_t)i))));

@@ -44,13 +44,15 @@ SIMD void aim_shadows(const struct gz_surface_cast *cast, unsigned number, const
 	const vf side = vf_select(behind, vf_set(-1), vf_set(1));
 	vf place[3];
 	for (int axis = 0; axis < 3; axis++)
-		place[axis] = vf_fma(side * vf_set(cast->lift), at->normal[axis], at->place[axis]);
+		place[axis] =
+			vf_fma(side * vf_set(cast->frame.lift), at->normal[axis], at->place[axis]);
 	if (!cast->field.on || number != cast->field.number)
 		lift_places(&cast->meshes[number], at, side, lanes.mask, place);
-	const vf towards[3] = { vf_set(cast->light.towards[0]), vf_set(cast->light.towards[1]),
-				vf_set(cast->light.towards[2]) };
+	const vf towards[3] = { vf_set(cast->frame.light.towards[0]),
+				vf_set(cast->frame.light.towards[1]),
+				vf_set(cast->frame.light.towards[2]) };
 	vf from = vf_set(0), to = vf_set(INFINITY);
-	if (cast->clipped)
+	if (cast->frame.clipped)
 		(void)clip_lanes(cast, place, towards, &from, &to);
 	put_lanes(lanes.mask, to, ray->tfar + first);
 	for (int axis = 0; axis < 3; axis++)
@@ -76,23 +78,23 @@ SIMD vm light_lanes(const struct gz_surface_cast *cast, unsigned number, struct 
 		const vf direction = vf_load(directions[axis] + first);
 		at.place[axis] = vf_fma(distance, direction, vf_load(origins[axis] + first));
 		view.eye[axis] = vf_set(0) - direction;
-		view.half[axis] = view.eye[axis] + vf_set(cast->light.towards[axis]);
+		view.half[axis] = view.eye[axis] + vf_set(cast->frame.light.towards[axis]);
 		length2 = vf_fma(view.half[axis], view.half[axis], length2);
 	}
 	const vf inverse = vf_set(1) / vf_sqrt(length2);
 	for (int axis = 0; axis < 3; axis++)
 		view.half[axis] = view.half[axis] * inverse;
-	const struct shine shine = find_shine(&cast->light, &view, at.normal, vf_set(0));
+	const struct shine shine = find_shine(&cast->frame.light, &view, at.normal, vf_set(0));
 	const vi id = vi_load(hits->ids + first);
 	vi_store(hits->ids + first, vi_select(mask, vi_set((int32_t)mesh->id), id));
 	put_lanes(mask, shine.factor, packet->factor + first);
 	put_lanes(mask, shine.white, packet->white + first);
 	for (int channel = 0; channel < 3; channel++)
 		put_lanes(mask, vf_set(mesh->colour[channel]), packet->colour[channel] + first);
-	if (!cast->shadows)
+	if (!cast->frame.shadows)
 		return mask;
 	aim_shadows(cast, number, &at, &view, lanes, packet);
-	return vm_and(mask, vf_less(vf_set(cast->light.ambient), shine.factor));
+	return vm_and(mask, vf_less(vf_set(cast->frame.light.ambient), shine.factor));
 }
 
 /* Light what SIMD_LANES rays from number `first` on have met. packet->valid becomes the rays that
@@ -124,7 +126,7 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 			lit = vm_or(lit, light_lanes(cast, i, (struct lanes) { first, mask },
 						     packet, hits));
 	}
-	const vf depth = vf_load(packet->hit.ray.tfar + first) * vf_set(cast->world_per_mm);
+	const vf depth = vf_load(packet->hit.ray.tfar + first) * vf_set(cast->frame.world_per_mm);
 	vf_store(hits->depth + first, vf_select(met, depth, vf_set(INFINITY)));
 	store_mask(lit, packet->valid + first);
 	return vm_any(lit);
@@ -144,7 +146,7 @@ SIMD void begin_shadows(const struct gz_surface_cast *cast, int first, struct pa
 	vi_store(ray->flags + first, vi_set(0));
 	for (int axis = 0; axis < 3; axis++) {
 		vf_store(origins[axis] + first, vf_set(0));
-		vf_store(directions[axis] + first, vf_set(cast->light.towards[axis]));
+		vf_store(directions[axis] + first, vf_set(cast->frame.light.towards[axis]));
 	}
 }
 
@@ -153,7 +155,7 @@ SIMD void darken_lanes(const struct gz_surface_cast *cast, int first, struct pac
 {
 	const vm lit = load_mask(packet->valid + first);
 	const vm dark = vm_and(lit, vf_less(vf_load(packet->shadow.tfar + first), vf_set(0)));
-	put_lanes(dark, vf_set(cast->light.ambient), packet->factor + first);
+	put_lanes(dark, vf_set(cast->frame.light.ambient), packet->factor + first);
 	put_lanes(dark, vf_set(0), packet->white + first);
 }
 
@@ -170,8 +172,8 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 				     : channel == 1 ? vi_shift_left(byte, 8)
 						    : vi_shift_left(byte, 16));
 	}
-	vi behind = vi_set((int32_t)cast->background);
-	if (cast->around.kind != GZ_SURROUNDINGS_NONE) {
+	vi behind = vi_set((int32_t)cast->frame.background);
+	if (cast->frame.around.kind != GZ_SURROUNDINGS_NONE) {
 		const struct ways way = load_ways(&packet->hit.ray, first);
 		const struct rgb seen = see_surroundings(cast, way.origin, way.direction);
 		behind = pack_rgb(&seen);
@@ -202,7 +204,7 @@ SIMD void follow_through_glass(const struct gz_surface_cast *cast, struct packet
 	for (int met = 0;; met++) {
 		int any = 0;
 		EACH_REGISTER any |= bend_hits(cast, first, packet, &glass);
-		if (!any || met + 1 == cast->bounces)
+		if (!any || met + 1 == cast->frame.bounces)
 			break;
 		meet_surfaces(cast, packet);
 	}
@@ -225,16 +227,16 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 	EACH_REGISTER
 	{
 		aim_lanes(cast, tile, first, &packet);
-		if (cast->shadows)
+		if (cast->frame.shadows)
 			begin_shadows(cast, first, &packet);
 	}
 	meet_surfaces(cast, &packet);
-	if (cast->bounces) {
+	if (cast->frame.bounces) {
 		follow_through_glass(cast, &packet, out_hits);
 		return;
 	}
 	EACH_REGISTER any_lit |= light_hits(cast, first, &packet, out_hits);
-	if (cast->shadows && any_lit) {
+	if (cast->frame.shadows && any_lit) {
 		gz_embree_occluded(packet.valid, cast->tree, tile->coherent_shadows,
 				   &packet.shadow);
 		if (cast->field.on)

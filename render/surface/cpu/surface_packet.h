@@ -45,8 +45,8 @@ SIMD vm clip_lanes(const struct gz_surface_cast *cast, const vf origin[3], const
 		const vf least = vf_set(1e-12F);
 		const vf along =
 			vf_select(vf_less(vf_abs(direction[axis]), least), least, direction[axis]);
-		const vf low = (vf_set(cast->clip_least[axis]) - origin[axis]) / along;
-		const vf high = (vf_set(cast->clip_greatest[axis]) - origin[axis]) / along;
+		const vf low = (vf_set(cast->frame.clip_least[axis]) - origin[axis]) / along;
+		const vf high = (vf_set(cast->frame.clip_greatest[axis]) - origin[axis]) / along;
 		*from = vf_max(*from, vf_min(low, high));
 		*to = vf_min(*to, vf_max(low, high));
 	}
@@ -64,12 +64,12 @@ SIMD void aim_lanes(const struct gz_surface_cast *cast, const struct gz_surface_
 	vf origin[3], direction[3], from = vf_set(0), to = vf_set(INFINITY);
 	vm valid = vm_from_bits(tile->active >> first);
 	for (int axis = 0; axis < 3; axis++) {
-		origin[axis] = vf_fma(
-			y, vf_set(cast->origin_dy[axis]),
-			vf_fma(x, vf_set(cast->origin_dx[axis]), vf_set(cast->origin00[axis])));
-		direction[axis] = vf_fma(y, vf_set(cast->direction_dy[axis]),
-					 vf_fma(x, vf_set(cast->direction_dx[axis]),
-						vf_set(cast->direction00[axis])));
+		origin[axis] = vf_fma(y, vf_set(cast->frame.origin_dy[axis]),
+				      vf_fma(x, vf_set(cast->frame.origin_dx[axis]),
+					     vf_set(cast->frame.origin00[axis])));
+		direction[axis] = vf_fma(y, vf_set(cast->frame.direction_dy[axis]),
+					 vf_fma(x, vf_set(cast->frame.direction_dx[axis]),
+						vf_set(cast->frame.direction00[axis])));
 	}
 	const vf inverse = vf_set(1) / vf_sqrt(dot_lanes(direction, direction));
 	for (int axis = 0; axis < 3; axis++) {
@@ -77,7 +77,7 @@ SIMD void aim_lanes(const struct gz_surface_cast *cast, const struct gz_surface_
 		vf_store(origins[axis] + first, origin[axis]);
 		vf_store(directions[axis] + first, direction[axis]);
 	}
-	if (cast->clipped)
+	if (cast->frame.clipped)
 		valid = vm_and(valid, clip_lanes(cast, origin, direction, &from, &to));
 	vf_store(ray->tnear + first, from);
 	vf_store(ray->tfar + first, to);

@@ -53,12 +53,12 @@ SIMD struct rgb floor_or_sky(const struct gz_surface_environment *around, const 
 SIMD struct rgb see_sky(const struct gz_surface_cast *cast, const vf origin[3],
 			const vf direction[3])
 {
-	const struct gz_surface_environment *around = &cast->around;
+	const struct gz_surface_environment *around = &cast->frame.around;
 	struct rgb seen;
 	vf rise = vf_set(0), cosine = vf_set(0);
 	for (int axis = 0; axis < 3; axis++) {
 		rise = vf_fma(direction[axis], vf_set(around->axes[0][axis]), rise);
-		cosine = vf_fma(direction[axis], vf_set(cast->light.towards[axis]), cosine);
+		cosine = vf_fma(direction[axis], vf_set(cast->frame.light.towards[axis]), cosine);
 	}
 	const vf up = vf_min(vf_max(rise, vf_set(0)), vf_set(1));
 	const vf blue = up * (vf_set(2) - up);
@@ -159,7 +159,7 @@ SIMD struct rgb see_cube(const struct gz_surface_environment *around, const vf d
 SIMD struct rgb see_surroundings(const struct gz_surface_cast *cast, const vf origin[3],
 				 const vf direction[3])
 {
-	const struct gz_surface_environment *around = &cast->around;
+	const struct gz_surface_environment *around = &cast->frame.around;
 	struct rgb seen;
 	if (around->kind == GZ_SURROUNDINGS_SKY)
 		return see_sky(cast, origin, direction);

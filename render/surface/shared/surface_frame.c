@@ -1,0 +1,134 @@
+#include "render/surface/shared/surface_frame.h"
+
+#include <math.h>
+
+/* How far above a surface its shadow rays begin, as a share of the distances in the picture.
+ * Chosen: 40 times the error of places in single precision. */
+#define LIFT_SHARE 2.5e-6
+
+/* Least colour of glass, so that its logarithm is finite. Chosen: no pixel shows less. */
+#define BLACKEST 1e-6
+
+static void fill_clip(const struct gz_surface_meshes *meshes, const struct gz_clip_box *clip,
+		      struct gz_surface_frame *frame)
+{
+	double half[3];
+	gz_volume_half_extent(meshes->items[0].object.volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		const double edge = 2 * half[axis] * meshes->world_mm;
+		frame->clipped =
+			frame->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;
+		frame->clip_least[axis] = (float)((clip->least[axis] - 0.5) * edge);
+		frame->clip_greatest[axis] = (float)((clip->greatest[axis] - 0.5) * edge);
+	}
+}
+
+static void fill_rays(const struct gz_surface_meshes *meshes, const struct gz_ray_frame *camera,
+		      struct gz_surface_frame *frame)
+{
+	double farthest = 1; /* world units from the centre */
+	for (int axis = 0; axis < 3; axis++) {
+		frame->origin00[axis] = (float)(camera->origin00[axis] * meshes->world_mm);
+		frame->origin_dx[axis] = (float)(camera->origin_dx[axis] * meshes->world_mm);
+		frame->origin_dy[axis] = (float)(camera->origin_dy[axis] * meshes->world_mm);
+		frame->direction00[axis] = (float)camera->direction00[axis];
+		frame->direction_dx[axis] = (float)camera->direction_dx[axis];
+		frame->direction_dy[axis] = (float)camera->direction_dy[axis];
+		farthest = fmax(farthest, fabs(camera->origin00[axis]));
+	}
+	frame->lift = (float)(LIFT_SHARE * farthest * meshes->world_mm);
+	frame->world_per_mm = (float)(1 / meshes->world_mm);
+}
+
+static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_frame *camera,
+		      struct gz_surface_frame *frame)
+{
+	const struct gz_light *light = &rays->light;
+	double towards[3];
+	gz_light_direction(light, camera, towards);
+	frame->light = (struct gz_cast_light) {
+		.on = true,
+		.ambient = (float)light->ambient,
+		.diffuse = (float)light->diffuse,
+		.specular = (float)light->specular,
+		.shininess = (float)light->shininess,
+	};
+	frame->background = UINT32_C(0xFF000000);
+	for (int i = 0; i < 3; i++) {
+		frame->light.towards[i] = (float)towards[i];
+		frame->background |= (uint32_t)(rays->background[i] * 255 + 0.5) << (8 * i);
+	}
+	frame->shadows = rays->surface.shadows;
+}
+
+static void fill_glass(const struct gz_surface_meshes *meshes, const struct gz_surface_look *look,
+		       struct gz_surface_frame *frame)
+{
+	const double root = (look->refractive_index - 1) / (look->refractive_index + 1);
+	frame->bounces = look->material == GZ_MATERIAL_GLASS ? look->bounces : 0;
+	frame->refractive_index = (float)look->refractive_index;
+	frame->least_reflection = (float)(root * root);
+	for (int i = 0; i < 3; i++)
+		frame->absorbed_per_mm[i] =
+			(float)(log2(fmax(look->colour[i], BLACKEST)) / meshes->world_mm);
+}
+
+/* After fill_look(), which knows the light. */
+static void fill_surroundings(const struct gz_surface_meshes *meshes, const struct gz_cube *cube,
+			      const struct gz_ray_params *rays, struct gz_surface_frame *frame)
+{
+	const struct gz_environment *environment = &rays->environment;
+	struct gz_surface_environment *around = &frame->around;
+	double axes[3][3], half[3], lowest = 0, overhead = 0;
+	const bool pictures = environment->kind == GZ_SURROUNDINGS_CUBE;
+	around->kind = pictures && !cube->edge ? GZ_SURROUNDINGS_NONE
+					       : (enum gz_surroundings)environment->kind;
+	around->texels = cube->texels;
+	around->edge = cube->edge;
+	around->floor = environment->floor;
+	if (pictures)
+		gz_cube_axes(environment->up, axes);
+	else
+		gz_environment_axes(environment, axes);
+	gz_volume_half_extent(meshes->items[0].object.volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		lowest -= fabs(axes[0][axis]) * half[axis] * meshes->world_mm;
+		overhead += axes[0][axis] * (double)frame->light.towards[axis];
+		for (int i = 0; i < 3; i++)
+			around->axes[i][axis] = (float)axes[i][axis];
+	}
+	const double lamp = rays->light.ambient + rays->light.diffuse * fmax(overhead, 0);
+	around->floor_mm = (float)lowest;
+	around->tiles_per_mm = (float)(1 / (environment->tile * meshes->world_mm));
+	around->fade_per_mm = (float)(1 / ((double)GZ_FLOOR_HALF * meshes->world_mm));
+	for (int i = 0; i < 3; i++) {
+		around->horizon[i] =
+			(float)(around->kind == GZ_SURROUNDINGS_SKY ? environment->horizon[i]
+								    : rays->background[i]);
+		around->zenith[i] = (float)environment->zenith[i];
+		around->bright[i] = (float)(environment->bright[i] * lamp);
+		around->dark[i] = (float)(environment->dark[i] * lamp);
+	}
+}
+
+void gz_surface_colour(const struct gz_surface_item *item, const struct gz_surface_look *look,
+		       float out_colour[3])
+{
+	const float *own = item->object.colour;
+	for (int i = 0; i < 3; i++)
+		out_colour[i] = own ? own[i] : (float)look->colour[i];
+}
+
+struct gz_surface_frame gz_surface_frame_make(const struct gz_surface_meshes *meshes,
+					      const struct gz_surface_cube *cube,
+					      const struct gz_ray_params *rays,
+					      const struct gz_ray_frame *camera)
+{
+	struct gz_surface_frame frame = { 0 };
+	fill_clip(meshes, &rays->clip, &frame);
+	fill_rays(meshes, camera, &frame);
+	fill_look(rays, camera, &frame);
+	fill_glass(meshes, &rays->surface, &frame);
+	fill_surroundings(meshes, &cube->cube, rays, &frame);
+	return frame;
+}
