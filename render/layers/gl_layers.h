@@ -26,7 +26,7 @@ struct gz_gl_layers {
 	int count;
 	int width, height; /**< of the picture, px */
 	struct gz_gl_points picture;
-	unsigned join; /**< program, OpenGL's name; 0 = not yet made */
+	unsigned join, pick; /**< programs, OpenGL's names; 0 = not yet made */
 };
 
 /**
@@ -53,6 +53,18 @@ void gz_gl_layer_begin(const struct gz_raster_layer *layer);
  */
 void gz_gl_layers_join(const struct gz_gl_layers *layers,
 		       const unsigned textures[GZ_PLAN_RECTANGLES_MAX], const double background[3]);
+
+/**
+ * Make a plane of numbers in place of the picture, which has been delivered: each pixel takes the
+ * nearest point of the layer that it shows most.
+ *
+ * @param textures   of each layer, R32UI; row 0 on top
+ * @param out_words  of the picture's size
+ * @retval GZ_ERR_NO_DEVICE, GZ_ERR_NO_MEM  not logged
+ */
+enum gz_result gz_gl_layers_pick(struct gz_gl_layers *layers, const struct gz_gl_device *device,
+				 const unsigned textures[GZ_PLAN_RECTANGLES_MAX],
+				 uint32_t *out_words);
 
 /**
  * Copy the picture to where it is wanted, and check for errors of the frame.
@@ -82,7 +94,8 @@ void gz_gl_outer_state_return(const struct gz_gl_outer_state *outer);
 
 /* For tests: */
 
-/** The shader that joins layers into the picture. */
+/** The shaders that join layers into the picture, and that pick numbers. */
 struct gz_gl_shader gz_gl_join_shader(void);
+struct gz_gl_shader gz_gl_pick_shader(void);
 
 #endif

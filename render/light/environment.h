@@ -29,13 +29,7 @@
 
 #include "base/option.h"
 #include "base/sizes.h"
-
-/** Cosines of the angles from the light where the sun's halo begins and where its disc is white.
- *  Chosen by eye: 5 and 2 degrees, so that coarse rays meet it too. */
-#define GZ_SUN_RIM  0.9962F
-#define GZ_SUN_DISC 0.9994F
-/** Distance at which half of the floor's contrast is left, world units. Chosen by eye. */
-#define GZ_FLOOR_HALF 3.0F
+#include "render/light/light_constants.h"
 
 /** What the surroundings are. */
 enum gz_surroundings {

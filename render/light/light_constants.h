@@ -25,4 +25,14 @@
  *  level. */
 #define GZ_SHADOW_BLACK 10.0F
 
+/** Cosines of the angles from the light where the sun's halo begins and where its disc is white.
+ *  Chosen by eye: 5 and 2 degrees, so that coarse rays meet it too. */
+#define GZ_SUN_RIM  0.9962F
+#define GZ_SUN_DISC 0.9994F
+/** Distance at which half of the floor's contrast is left, world units. Chosen by eye. */
+#define GZ_FLOOR_HALF 3.0F
+/** A ray that falls less for each unit of its way does not meet the floor. Chosen: it would meet it
+ *  where nothing but the horizon is left. */
+#define GZ_FLOOR_FALL 1e-4F
+
 #endif

@@ -18,9 +18,8 @@ const struct gz_option gz_surface_look_options[] = {
 	{ "isosurface.refractive_index", GZ_OPTION_DOUBLE, AT(refractive_index), 1, 4,
 	  .preset = "1.333", .help = "refractive index of glass; 1.333 is water" },
 	{ "isosurface.bounces", GZ_OPTION_INT, AT(bounces), 1, 32, .preset = "4",
-	  .help = "surfaces of glass that a ray meets at most" },
-	{ "isosurface.shadows", GZ_OPTION_BOOL, AT(shadows), .preset = "no",
-	  .help = "hard shadows" },
+	  .help = "surfaces of glass that a ray meets at most; backend gl: one" },
+	{ "isosurface.shadows", GZ_OPTION_BOOL, AT(shadows), .preset = "no", .help = "shadows" },
 };
 const size_t gz_surface_look_option_count =
 	sizeof gz_surface_look_options / sizeof gz_surface_look_options[0];

@@ -6,12 +6,15 @@
 
 #define GZ_LOG_MODULE "gl"
 
+/* The bits of a float that is infinite. */
+#define INFINITE_BITS 0x7F800000U
+
 static const struct {
 	GLenum internal, format, type;
 } plane_formats[GZ_GL_TARGET_PLANES] = {
 	[GZ_GL_TARGET_COLOUR] = { GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE },
 	[GZ_GL_TARGET_ID] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
-	[GZ_GL_TARGET_VALUE] = { GL_R32F, GL_RED, GL_FLOAT },
+	[GZ_GL_TARGET_VALUE] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
 };
 
 static unsigned wanted_planes(const struct gz_gl_target *target)
@@ -45,20 +48,30 @@ static void attach_planes(struct gz_gl_target *target, unsigned planes)
 	glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-enum gz_result gz_gl_target_resize(struct gz_gl_target *target, const struct gz_gl_device *device,
-				   unsigned planes, int width, int height, const struct gz_log *log)
+static bool target_fits(const struct gz_gl_target *target, unsigned planes, int width, int height)
 {
-	if (target->framebuffer && target->width == width && target->height == height &&
-	    wanted_planes(target) == planes)
+	return target->framebuffer && target->width >= width && target->height >= height &&
+	       wanted_planes(target) == planes;
+}
+
+enum gz_result gz_gl_target_reserve(struct gz_gl_target *target, const struct gz_gl_device *device,
+				    unsigned planes, int width, int height,
+				    const struct gz_log *log)
+{
+	GLint before = 0;
+	if (target_fits(target, planes, width, height))
 		return GZ_OK;
+	width = width > target->width ? width : target->width;
+	height = height > target->height ? height : target->height;
 	gz_gl_target_free(target);
 	target->width = width;
 	target->height = height;
+	glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
 	glGenFramebuffers(1, &target->framebuffer);
 	glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
 	attach_planes(target, planes);
 	const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-	glBindFramebuffer(GL_FRAMEBUFFER, 0);
+	glBindFramebuffer(GL_FRAMEBUFFER, (GLuint)before);
 	enum gz_result result = gz_gl_device_errors(device);
 	if (result == GZ_OK && !complete)
 		result = GZ_ERR_UNSUPPORTED;
@@ -81,20 +94,15 @@ void gz_gl_target_begin(const struct gz_gl_target *target)
 void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4])
 {
 	static const GLuint no_id[4] = { 0 };
-	static const GLfloat no_value[4] = { 0 }, farthest = 1;
+	static const GLuint no_value[4] = { INFINITE_BITS };
+	static const GLfloat farthest = 1;
 	if (target->planes[GZ_GL_TARGET_COLOUR])
 		glClearBufferfv(GL_COLOR, GZ_GL_TARGET_COLOUR, colour);
 	if (target->planes[GZ_GL_TARGET_ID])
 		glClearBufferuiv(GL_COLOR, GZ_GL_TARGET_ID, no_id);
 	if (target->planes[GZ_GL_TARGET_VALUE])
-		glClearBufferfv(GL_COLOR, GZ_GL_TARGET_VALUE, no_value);
+		glClearBufferuiv(GL_COLOR, GZ_GL_TARGET_VALUE, no_value);
 	glClearBufferfv(GL_DEPTH, 0, &farthest);
-}
-
-void gz_gl_target_end(void)
-{
-	glDisable(GL_DEPTH_TEST);
-	glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,

@@ -16,7 +16,7 @@
 enum gz_gl_target_plane {
 	GZ_GL_TARGET_COLOUR, /**< RGBA8 */
 	GZ_GL_TARGET_ID,     /**< R32UI: an object's id; 0 = no object */
-	GZ_GL_TARGET_VALUE,  /**< R32F: any number */
+	GZ_GL_TARGET_VALUE,  /**< R32UI: the bits of a float */
 	GZ_GL_TARGET_PLANES,
 };
 
@@ -25,31 +25,29 @@ struct gz_gl_target {
 	unsigned framebuffer;                 /**< OpenGL's names; 0: none */
 	unsigned planes[GZ_GL_TARGET_PLANES]; /**< textures; 0 if the plane is not wanted */
 	unsigned depth;                       /**< texture, DEPTH_COMPONENT32F */
-	int width, height;
+	int width, height;                    /**< at least what was asked for */
 };
 
 /**
- * Make a framebuffer of @p width x @p height pixels, or keep the one there is if it fits.
+ * Make a framebuffer of at least @p width x @p height pixels, or keep the one there is if it is
+ * large enough.
  *
  * @param planes  bits 1 << enum gz_gl_target_plane of the planes wanted; depth is always there
  * @retval GZ_ERR_NO_MEM       the device has no room; logged. The target is empty
  * @retval GZ_ERR_UNSUPPORTED  the driver has no such framebuffer; logged. The target is empty
  */
-enum gz_result gz_gl_target_resize(struct gz_gl_target *target, const struct gz_gl_device *device,
-				   unsigned planes, int width, int height,
-				   const struct gz_log *log);
+enum gz_result gz_gl_target_reserve(struct gz_gl_target *target, const struct gz_gl_device *device,
+				    unsigned planes, int width, int height,
+				    const struct gz_log *log);
 
 /** Draw into the target from now on, over its whole size, with depth test and without blending. */
 void gz_gl_target_begin(const struct gz_gl_target *target);
 
-/** Clear all planes: colour to @p colour (R, G, B, A in [0, 1]), ids and values to 0, depth to
- * the farthest. Call it between begin and end. */
+/** Clear all planes: colour to @p colour (R, G, B, A in [0, 1]), ids to 0, values to infinity,
+ * depth to the farthest. Call it after begin. */
 void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4]);
 
-/** Draw into the default framebuffer again, without depth test. */
-void gz_gl_target_end(void);
-
-/** Read a plane back: width x height words of 32 bits, row 0 is the bottom one. */
+/** Read a plane back: target->width x target->height words of 32 bits, row 0 is the bottom one. */
 void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,
 		       uint32_t *out_words);
 

@@ -130,6 +130,41 @@ enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int hei
 	return GZ_OK;
 }
 
+/* Perspective: P - origin = depth (x dx + y dy + d00). Orthographic: = x ox + y oy + depth d00.
+ * Both are a matrix times a vector. */
+bool gz_ray_inverse_make(const struct gz_ray_frame *rays, struct gz_ray_inverse *out_inverse)
+{
+	struct gz_ray_inverse inverse = {
+		.orthographic = gz_dot3(rays->direction_dx, rays->direction_dx) == 0,
+	};
+	const double *x = inverse.orthographic ? rays->origin_dx : rays->direction_dx;
+	const double *y = inverse.orthographic ? rays->origin_dy : rays->direction_dy;
+	gz_cross3(y, rays->direction00, inverse.rows[0]);
+	gz_cross3(rays->direction00, x, inverse.rows[1]);
+	gz_cross3(x, y, inverse.rows[2]);
+	const double determinant = gz_dot3(x, inverse.rows[0]);
+	if (!(fabs(determinant) > 0) || !isfinite(1 / determinant))
+		return false;
+	for (int row = 0; row < 3; row++)
+		for (int column = 0; column < 3; column++)
+			inverse.rows[row][column] /= determinant;
+	memcpy(inverse.origin, rays->origin00, sizeof inverse.origin);
+	*out_inverse = inverse;
+	return true;
+}
+
+void gz_ray_inverse_point(const struct gz_ray_inverse *inverse, const double world[3],
+			  double out[4])
+{
+	double from[3];
+	for (int axis = 0; axis < 3; axis++)
+		from[axis] = world[axis] - inverse->origin[axis];
+	out[0] = gz_dot3(inverse->rows[0], from);
+	out[1] = gz_dot3(inverse->rows[1], from);
+	out[3] = gz_dot3(inverse->rows[2], from);
+	out[2] = inverse->orthographic ? 1 : out[3];
+}
+
 /* Rodrigues' rotation of v about the unit vector axis. */
 static void rotate_vector(double v[3], const double axis[3], double angle_deg)
 {

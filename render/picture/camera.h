@@ -44,6 +44,25 @@ struct gz_ray_frame {
 enum gz_result gz_camera_rays(const struct gz_camera *camera, int width, int height,
 			      struct gz_ray_frame *out_rays);
 
+/** From a point of the world to its pixel: the inverse of a struct gz_ray_frame. */
+struct gz_ray_inverse {
+	double rows[3][3]; /**< of the matrix whose columns are the rays' differences */
+	double origin[3];
+	bool orthographic;
+};
+
+/** Invert the rays of a picture. Returns false if those of different pixels are not apart. */
+bool gz_ray_inverse_make(const struct gz_ray_frame *rays, struct gz_ray_inverse *out_inverse);
+
+/**
+ * Project a point: with P = origin + depth * direction for the ray of pixel (x, y),
+ *
+ * @param[out] out  x w, y w, w, depth; w is the depth in perspective and 1 in orthographic
+ *                  projection
+ */
+void gz_ray_inverse_point(const struct gz_ray_inverse *inverse, const double world[3],
+			  double out[4]);
+
 /** Whether up is used: it is not zero and not parallel to the view. */
 bool gz_camera_up_counts(const struct gz_camera *camera);
 

@@ -1,26 +1,58 @@
-/* The technique's drawer: a caster of surfaces. */
+/* The technique's drawer: a caster of rays or a rasteriser, and what it shows. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/surface/cpu/surface_caster.h"
+#include "render/surface/gl/surface_raster.h"
 #include "render/surface/isosurface_technique.h"
 
 #define GZ_LOG_MODULE "isosurface"
 
+static const char cpu_name[] = "cpu", gl_name[] = "gl";
+
+/* The rasteriser makes pictures of its own. In those of several techniques rays meet surfaces, so
+ * the drawer of gl has a caster, too, once it is needed. */
 struct isosurface_drawer {
 	struct gz_drawer base;
-	struct gz_surface_caster *caster;
+	const struct gz_log *log;
+	struct gz_backend_params params;
+	struct gz_surface_raster *raster; /* NULL: the backend is cpu */
+	struct gz_surface_caster *caster; /* NULL: none yet */
+	struct gz_object *objects;        /* shown */
+	size_t count;
 };
 
-static struct gz_surface_caster *caster_of(const struct gz_drawer *drawer)
+static struct isosurface_drawer *isosurface_of(struct gz_drawer *drawer)
 {
-	return ((const struct isosurface_drawer *)drawer)->caster;
+	return (struct isosurface_drawer *)drawer;
+}
+
+static const struct isosurface_drawer *isosurface_read(const struct gz_drawer *drawer)
+{
+	return (const struct isosurface_drawer *)drawer;
 }
 
 static enum gz_result isosurface_show(struct gz_drawer *drawer, const struct gz_object *objects,
 				      size_t count)
 {
-	return gz_surface_caster_show(caster_of(drawer), objects, count);
+	struct isosurface_drawer *self = isosurface_of(drawer);
+	struct gz_object *copy = malloc((count > 0 ? count : 1) * sizeof *copy);
+	if (!copy)
+		return GZ_ERR_NO_MEM;
+	memcpy(copy, objects, count * sizeof *copy);
+	enum gz_result result = GZ_OK;
+	if (self->raster)
+		result = gz_surface_raster_show(self->raster, objects, count);
+	if (self->caster && result == GZ_OK)
+		result = gz_surface_caster_show(self->caster, objects, count);
+	if (result != GZ_OK) {
+		free(copy);
+		return result;
+	}
+	free(self->objects);
+	self->objects = copy;
+	self->count = count;
+	return GZ_OK;
 }
 
 static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
@@ -36,45 +68,67 @@ static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
 static enum gz_result isosurface_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
 				      struct gz_image *image, struct gz_frame_stats *out_stats)
 {
+	const struct isosurface_drawer *self = isosurface_read(drawer);
 	const struct gz_surface_shot surfaces = surface_shot_of(shot);
-	return image ? gz_surface_caster_draw(caster_of(drawer), &surfaces, image, NULL, out_stats)
+	if (self->raster)
+		return gz_surface_raster_draw(self->raster, &surfaces, image, NULL, out_stats);
+	return image ? gz_surface_caster_draw(self->caster, &surfaces, image, NULL, out_stats)
 		     : GZ_ERR_INVAL;
+}
+
+/* Make the caster of a drawer whose backend is gl, and show it the objects. */
+static enum gz_result add_caster(struct isosurface_drawer *self)
+{
+	if (self->caster)
+		return GZ_OK;
+	enum gz_result result = gz_surface_caster_create(&self->params, self->log, &self->caster);
+	if (result == GZ_OK)
+		result = gz_surface_caster_show(self->caster, self->objects, self->count);
+	if (result != GZ_OK)
+		gz_surface_caster_destroy(&self->caster);
+	return result;
 }
 
 static enum gz_result isosurface_cast_hits(struct gz_drawer *drawer, const struct gz_shot *shot,
 					   struct gz_frame_stats *out_stats)
 {
+	struct isosurface_drawer *self = isosurface_of(drawer);
 	const struct gz_surface_shot surfaces = surface_shot_of(shot);
-	return gz_surface_caster_draw(caster_of(drawer), &surfaces, NULL, NULL, out_stats);
+	const enum gz_result result = add_caster(self);
+	return result == GZ_OK
+		       ? gz_surface_caster_draw(self->caster, &surfaces, NULL, NULL, out_stats)
+		       : result;
 }
 
 static bool isosurface_keeps_on_device(const struct gz_drawer *drawer)
 {
-	(void)drawer;
-	return false;
+	return isosurface_read(drawer)->raster != NULL;
 }
 
 static unsigned isosurface_picture_texture(const struct gz_drawer *drawer)
 {
-	(void)drawer;
-	return 0;
+	const struct isosurface_drawer *self = isosurface_read(drawer);
+	return self->raster ? gz_surface_raster_picture(self->raster) : 0;
 }
 
 static const char *isosurface_backend(const struct gz_drawer *drawer)
 {
-	(void)drawer;
-	return gz_isosurface_technique.backends[0];
+	return isosurface_read(drawer)->raster ? gl_name : cpu_name;
 }
 
 static const char *isosurface_describe(const struct gz_drawer *drawer)
 {
-	return gz_surface_caster_describe(caster_of(drawer));
+	const struct isosurface_drawer *self = isosurface_read(drawer);
+	return self->raster ? gz_surface_raster_describe(self->raster)
+			    : gz_surface_caster_describe(self->caster);
 }
 
 static void isosurface_destroy(struct gz_drawer *drawer)
 {
-	struct isosurface_drawer *self = (struct isosurface_drawer *)drawer;
+	struct isosurface_drawer *self = isosurface_of(drawer);
+	gz_surface_raster_destroy(&self->raster);
 	gz_surface_caster_destroy(&self->caster);
+	free(self->objects);
 	free(self);
 }
 
@@ -89,17 +143,27 @@ static const struct gz_drawer_ops isosurface_ops = {
 	.destroy = isosurface_destroy,
 };
 
+/* Whether a backend, known or "auto", is gl. */
+static bool takes_gl(const char *backend)
+{
+	if (!backend || strcmp(backend, "auto") == 0)
+		return !gz_surface_caster_present();
+	return strcmp(backend, gl_name) == 0;
+}
+
 enum gz_result gz_isosurface_check(const char *backend, const struct gz_backend_params *params,
 				   const struct gz_log *log)
 {
+	static const struct gz_backend_params defaults = { 0 };
 	const bool known = !backend || strcmp(backend, "auto") == 0 ||
-			   strcmp(backend, gz_isosurface_technique.backends[0]) == 0;
+			   gz_technique_has_backend(&gz_isosurface_technique, backend);
 	if (!known) {
-		gz_err(log, "isosurface has no backend '%s': there are auto, %s", backend,
-		       gz_isosurface_technique.backends[0]);
+		gz_err(log, "isosurface has no backend '%s': there are auto, %s, %s", backend,
+		       gl_name, cpu_name);
 		return GZ_ERR_NOT_FOUND;
 	}
-	return params ? gz_surface_caster_check(params, log) : GZ_OK;
+	return takes_gl(backend) ? GZ_OK
+				 : gz_surface_caster_check(params ? params : &defaults, log);
 }
 
 enum gz_result gz_isosurface_create(const char *backend, const struct gz_backend_params *params,
@@ -112,7 +176,11 @@ enum gz_result gz_isosurface_create(const char *backend, const struct gz_backend
 	if (!self)
 		return GZ_ERR_NO_MEM;
 	self->base.ops = &isosurface_ops;
-	result = gz_surface_caster_create(params, log, &self->caster);
+	self->log = log;
+	if (params)
+		self->params = *params;
+	result = takes_gl(backend) ? gz_surface_raster_create(&self->params, log, &self->raster)
+				   : gz_surface_caster_create(&self->params, log, &self->caster);
 	if (result != GZ_OK) {
 		free(self);
 		return result;

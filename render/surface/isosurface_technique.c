@@ -17,11 +17,11 @@ static size_t isosurface_bind(void *settings, struct gz_option_binding *out_bind
 	return own;
 }
 
-static const char *const isosurface_backends[] = { "cpu", NULL };
+static const char *const isosurface_backends[] = { "gl", "cpu", NULL };
 
 const struct gz_technique gz_isosurface_technique = {
 	.name = "isosurface",
-	.help = "casts rays at the surface where a volume has one value, at labels and at meshes",
+	.help = "shows the surface where a volume has one value, labels and meshes",
 	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_LABELS | GZ_OBJECT_MESH | GZ_OBJECT_PARTICLES,
 	.objects_max = SURFACES_MAX,
 	.backends = isosurface_backends,

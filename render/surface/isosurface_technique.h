@@ -1,6 +1,7 @@
 /**
  * @file
- * The technique `isosurface`: surfaces of volumes, and meshes, by rays through a tree of triangles.
+ * The technique `isosurface`: surfaces of volumes, and meshes, by rays through a tree of triangles
+ * or as triangles by OpenGL.
  */
 #ifndef GZ_RENDER_SURFACE_ISOSURFACE_TECHNIQUE_H
 #define GZ_RENDER_SURFACE_ISOSURFACE_TECHNIQUE_H
@@ -8,8 +9,8 @@
 #include "render/technique/technique.h"
 
 /** Its settings are a struct gz_ray_params. Of a volume it shows the surface where the data are
- *  surface.isovalue. Without Embree in the build, check and create return GZ_ERR_UNSUPPORTED and
- *  log what is missing. */
+ *  surface.isovalue. "auto" is cpu, whose shadows and refractions are exact, or gl in a build
+ *  without Embree. There cpu and cast_hits return GZ_ERR_UNSUPPORTED and log what is missing. */
 extern const struct gz_technique gz_isosurface_technique;
 
 /* Within this room: */

@@ -60,8 +60,8 @@ struct gz_backend_params {
 	 *  (render/opengl/gl_device.h). */
 	struct gz_gl_context *gl_context;
 	bool gl_hardware_only; /**< gl: refuse an OpenGL that runs on the processor */
-	/** gl: limit of the device memory for voxels, bytes; a volume that does not fit is shown by
-	 *  bricks. 0 = as much as the driver has. */
+	/** gl: limit of the device memory for voxels, or for triangles, bytes; a volume that does
+	 * not fit is shown by bricks. 0 = as much as the driver has. */
 	size_t gl_memory_bytes;
 };
 

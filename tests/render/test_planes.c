@@ -9,6 +9,7 @@
 #include <GL/glew.h>
 
 #include "base/workers.h"
+#include "render/layers/gl_layers.h"
 #include "render/opengl/gl_device.h"
 #include "render/opengl/gl_program.h"
 #include "render/opengl/gl_target.h"
@@ -306,22 +307,29 @@ static const char triangles_frag[] = "flat in uint id;\n"
 				     "in float far;\n"
 				     "layout(location = 0) out vec4 colour;\n"
 				     "layout(location = 1) out uint object;\n"
-				     "layout(location = 2) out float value;\n"
+				     "layout(location = 2) out uint value;\n"
 				     "void main()\n"
 				     "{\n"
 				     "	colour = id == 1U ? vec4(1, 0, 0, 1) : vec4(0, 1, 0, 1);\n"
 				     "	object = id;\n"
-				     "	value = far;\n"
+				     "	value = floatBitsToUint(far);\n"
 				     "}\n";
 
 static void draw_triangles(const struct gz_gl_target *target)
 {
 	static const float background[4] = { 0, 0, 1, 1 };
 	const struct gz_gl_shader shaders[2] = {
-		{ .stage = GZ_GL_VERTEX, .name = "triangles.vert", .parts = { triangles_vert } },
-		{ .stage = GZ_GL_FRAGMENT, .name = "triangles.frag", .parts = { triangles_frag } },
+		{ .stage = GZ_GL_VERTEX,
+		  .name = "triangles.vert",
+		  .parts = { triangles_vert },
+		  .with_430 = true },
+		{ .stage = GZ_GL_FRAGMENT,
+		  .name = "triangles.frag",
+		  .parts = { triangles_frag },
+		  .with_430 = true },
 	};
 	const unsigned program = gz_gl_program(shaders, 2, "use --backend cpu", NULL);
+	const struct gz_gl_outer_state outer = gz_gl_outer_state_leave();
 	GLuint vertices = 0;
 	assert_int_not_equal(program, 0);
 	glGenVertexArrays(1, &vertices);
@@ -330,7 +338,7 @@ static void draw_triangles(const struct gz_gl_target *target)
 	gz_gl_target_clear(target, background);
 	glUseProgram(program);
 	glDrawArrays(GL_TRIANGLES, 0, 6);
-	gz_gl_target_end();
+	gz_gl_outer_state_return(&outer);
 	glUseProgram(0);
 	glDeleteVertexArrays(1, &vertices);
 	glDeleteProgram(program);
@@ -343,8 +351,8 @@ static void target_holds_colour_object_and_value_of_what_is_nearest(void **state
 	struct gz_gl_target target = { 0 };
 	uint32_t words[SIDE * SIDE];
 	open_gl();
-	assert_int_equal(gz_gl_target_resize(&target, &gl.device, (1U << GZ_GL_TARGET_PLANES) - 1,
-					     SIDE, SIDE, NULL),
+	assert_int_equal(gz_gl_target_reserve(&target, &gl.device, (1U << GZ_GL_TARGET_PLANES) - 1,
+					      SIDE, SIDE, NULL),
 			 GZ_OK);
 	draw_triangles(&target);
 	/* the first covers the lower left half, the second, nearer, begins in a quarter */
@@ -355,7 +363,7 @@ static void target_holds_colour_object_and_value_of_what_is_nearest(void **state
 	} places[] = {
 		{ 4, 4, 0xFF0000FF, 1, 0.75F },
 		{ 20, 20, 0xFF00FF00, 2, 0.25F },
-		{ 62, 62, 0xFFFF0000, 0, 0 },
+		{ 62, 62, 0xFFFF0000, 0, INFINITY },
 	};
 	for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
 		const int k = places[i].y * SIDE + places[i].x;
@@ -369,8 +377,9 @@ static void target_holds_colour_object_and_value_of_what_is_nearest(void **state
 		assert_true(value == places[i].value);
 	}
 	assert_int_equal(
-		gz_gl_target_resize(&target, &gl.device, 1U << GZ_GL_TARGET_ID, 8, 8, NULL), GZ_OK);
-	assert_true(target.width == 8 && target.planes[GZ_GL_TARGET_COLOUR] == 0);
+		gz_gl_target_reserve(&target, &gl.device, 1U << GZ_GL_TARGET_ID, 8, 8, NULL),
+		GZ_OK);
+	assert_true(target.width == SIDE && target.planes[GZ_GL_TARGET_COLOUR] == 0);
 	assert_int_equal(gz_gl_device_errors(&gl.device), GZ_OK);
 	gz_gl_target_free(&target);
 	close_gl();

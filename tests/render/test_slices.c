@@ -2,10 +2,7 @@
 #include "suite.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <GL/glew.h>
 
@@ -15,6 +12,7 @@
 #include "render/plan/method.h"
 #include "render/slices/gl/gl_slicer.h"
 #include "render/slices/slices_technique.h"
+#include "shader_check.h"
 #include "small_scene.h"
 
 enum { WIDTH = 40, HEIGHT = 30 };
@@ -340,31 +338,13 @@ static void picture_left_in_a_lent_context_equals_the_one_read_back(void **state
 	small_scene_free(&scene);
 }
 
-static void check_shader(const struct gz_gl_shader *shader)
-{
-	static const char *const stages[] = { "vert", "frag", "comp" };
-	char path[] = "/tmp/gazecast-shader-XXXXXX", command[128];
-	const char *pieces[GZ_GL_PIECES_MAX];
-	const int count = gz_gl_shader_source(shader, pieces);
-	FILE *out = fdopen(mkstemp(path), "w");
-	assert_non_null(out);
-	for (int i = 0; i < count; i++)
-		fputs(pieces[i], out);
-	assert_int_equal(fclose(out), 0);
-	snprintf(command, sizeof command, "glslangValidator -S %s %s", stages[shader->stage], path);
-	const int status = system(command);
-	unlink(path);
-	assert_int_equal(status, 0);
-}
-
 /* Drivers forgive what the reference compiler does not. */
 static void shaders_of_slices_are_valid_for_the_reference_compiler(void **state)
 {
 	(void)state;
 	char defines[GZ_GL_CAST_DEFINES_SIZE];
 	struct gz_gl_shader shaders[2];
-	if (system("glslangValidator --version >/dev/null 2>&1") != 0)
-		skip();
+	shader_check_needs_validator();
 	for (int variant = 0; variant < 16; variant++) {
 		const struct gz_gl_cast_kind kind = {
 			.texels = variant & 1 ? GZ_GL_TEXELS_BRICKS : GZ_GL_TEXELS_PACKED,
@@ -376,14 +356,14 @@ static void shaders_of_slices_are_valid_for_the_reference_compiler(void **state)
 		};
 		const struct gz_gl_device device = { .software = variant & 8 };
 		gz_gl_slice_shaders(kind, &device, defines, shaders);
-		check_shader(&shaders[1]);
+		shader_check(&shaders[1]);
 	}
-	check_shader(&shaders[0]);
+	shader_check(&shaders[0]);
 	gz_gl_hide_shaders(shaders);
-	check_shader(&shaders[0]);
-	check_shader(&shaders[1]);
+	shader_check(&shaders[0]);
+	shader_check(&shaders[1]);
 	shaders[0] = gz_gl_join_shader();
-	check_shader(&shaders[0]);
+	shader_check(&shaders[0]);
 }
 
 TEST_SUITE(slices)

@@ -40,14 +40,15 @@ const struct gz_option gz_view_option_table[] = {
 	{ "technique", GZ_OPTION_CHOICE, AT(technique), .choices = gz_technique_choices,
 	  .help = "short for --render.technique: how everything is drawn" },
 	{ "backend", GZ_OPTION_STRING, AT(backend), .max = GZ_NAME_SIZE, .preset = "auto",
-	  .help = "what casts the rays: cpu, gl (OpenGL 4.3), or auto (gl if a GPU provides it)" },
+	  .help = "what draws: cpu, gl (OpenGL 4.3), or auto (gl if a GPU provides it; surfaces: "
+		  "cpu)" },
 	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
 	  .help = "threads of the cpu backend; 0: one per processor" },
 	{ "simd", GZ_OPTION_STRING, AT(simd), .max = GZ_NAME_SIZE, .preset = "auto",
 	  .help = "instruction set of the cpu backend: auto, portable, avx2, avx512" },
 	{ "gl-memory", GZ_OPTION_INT, AT(gl_memory_mib), 0, 1 << 24, .preset = "0",
-	  .help = "graphics memory that the gl backend uses for voxels, MiB; 0: all that is free; "
-		  "a volume that does not fit is shown in bricks" },
+	  .help = "graphics memory that the gl backend uses for voxels, or for triangles, MiB; "
+		  "0: all that is free; a volume that does not fit is shown in bricks" },
 	{ "frames", GZ_OPTION_INT, AT(frames), 1, 100000000, .preset = "1",
 	  .help = "number of pictures to render headless" },
 	{ "out", GZ_OPTION_STRING, AT(out), .max = GZ_PATH_SIZE,

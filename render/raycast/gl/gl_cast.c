@@ -18,6 +18,7 @@ extern const char gz_glsl_light_constants_h[];
 extern const char gz_glsl_cast_constants_h[];
 extern const char gz_glsl_cast_block_glsl[];
 extern const char gz_glsl_fetch_glsl[];
+extern const char gz_glsl_shine_glsl[];
 extern const char gz_glsl_shade_glsl[];
 extern const char gz_glsl_cast_comp[];
 
@@ -51,7 +52,7 @@ const char *const gz_gl_sample_parts[GZ_GL_SAMPLE_PARTS] = {
 	gz_glsl_transfer_constants_h, gz_glsl_light_constants_h,
 	gz_glsl_cast_constants_h,     cast_sizes,
 	gz_glsl_cast_block_glsl,      gz_glsl_fetch_glsl,
-	gz_glsl_shade_glsl,
+	gz_glsl_shine_glsl,           gz_glsl_shade_glsl,
 };
 
 void gz_gl_cast_defines(struct gz_gl_cast_kind kind, const struct gz_gl_device *device,

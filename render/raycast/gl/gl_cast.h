@@ -107,7 +107,7 @@ struct gz_gl_cast {
 /** The source parts that give a shader samples of the volume, their colours and their light:
  *  constants, the uniform block, fetches and shading. They follow the constants of the plan
  *  (gz_gl_plan_parts[0]) and need gz_gl_cast_defines(). */
-#define GZ_GL_SAMPLE_PARTS     7
+#define GZ_GL_SAMPLE_PARTS     8
 #define GZ_GL_SAMPLE_CONSTANTS 2 /**< the part that is cast_constants.h */
 extern const char *const gz_gl_sample_parts[GZ_GL_SAMPLE_PARTS];
 

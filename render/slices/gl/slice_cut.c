@@ -7,61 +7,7 @@
 /* A polygon of n corners becomes n - 2 triangles. */
 enum { TRIANGLE_CORNERS_MAX = 3 * (GZ_SLICE_CORNERS_MAX - 2) };
 
-/* From a point of the world to pixel and depth. */
-struct projection {
-	double inverse[3][3]; /* of the matrix whose columns are the rays' differences */
-	double origin[3];
-	bool orthographic;
-};
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	out[0] = a[1] * b[2] - a[2] * b[1];
-	out[1] = a[2] * b[0] - a[0] * b[2];
-	out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Perspective: P - origin = depth (x dx + y dy + d00). Orthographic: = x ox + y oy + depth d00.
- * Both are a matrix times a vector. */
-static bool projection_make(const struct gz_ray_frame *rays, struct projection *out_projection)
-{
-	struct projection projection = { .orthographic =
-						 dot(rays->direction_dx, rays->direction_dx) == 0 };
-	const double *x = projection.orthographic ? rays->origin_dx : rays->direction_dx;
-	const double *y = projection.orthographic ? rays->origin_dy : rays->direction_dy;
-	double rows[3][3];
-	cross(y, rays->direction00, rows[0]);
-	cross(rays->direction00, x, rows[1]);
-	cross(x, y, rows[2]);
-	const double determinant = dot(x, rows[0]);
-	if (!(fabs(determinant) > 0) || !isfinite(1 / determinant))
-		return false;
-	for (int row = 0; row < 3; row++)
-		for (int column = 0; column < 3; column++)
-			projection.inverse[row][column] = rows[row][column] / determinant;
-	memcpy(projection.origin, rays->origin00, sizeof projection.origin);
-	*out_projection = projection;
-	return true;
-}
-
-/* x, y, w and depth of a point. */
-static void project(const struct projection *projection, const double world[3], double out[4])
-{
-	double from[3];
-	for (int axis = 0; axis < 3; axis++)
-		from[axis] = world[axis] - projection->origin[axis];
-	out[0] = dot(projection->inverse[0], from);
-	out[1] = dot(projection->inverse[1], from);
-	out[3] = dot(projection->inverse[2], from);
-	out[2] = projection->orthographic ? 1 : out[3];
-}
-
-static void project_box(const struct projection *projection, const double least[3],
+static void project_box(const struct gz_ray_inverse *inverse, const double least[3],
 			const double greatest[3], double out_corners[8][4])
 {
 	for (int i = 0; i < 8; i++) {
@@ -70,7 +16,7 @@ static void project_box(const struct projection *projection, const double least[
 			i & 2 ? greatest[1] : least[1],
 			i & 4 ? greatest[2] : least[2],
 		};
-		project(projection, world, out_corners[i]);
+		gz_ray_inverse_point(inverse, world, out_corners[i]);
 	}
 }
 
@@ -193,20 +139,20 @@ static void find_depths(const double box[8][4], double *out_near, double *out_fa
 
 enum gz_result gz_slice_cut_make(const struct gz_slice_request *request, struct gz_slice_cut *cut)
 {
-	struct projection projection;
+	struct gz_ray_inverse inverse;
 	double whole[8][4], shown[8][4], far;
 	if (cut->valid && same_request(&cut->made_for, request))
 		return GZ_OK;
 	cut->valid = false;
 	cut->count = 0;
-	if (request->count < 1 || !projection_make(&request->rays, &projection))
+	if (request->count < 1 || !gz_ray_inverse_make(&request->rays, &inverse))
 		return GZ_ERR_INVAL;
 	const enum gz_result result = reserve_slices(cut, request->count);
 	if (result != GZ_OK)
 		return result;
 	const double opposite[3] = { -request->half[0], -request->half[1], -request->half[2] };
-	project_box(&projection, opposite, request->half, whole);
-	project_box(&projection, request->least, request->greatest, shown);
+	project_box(&inverse, opposite, request->half, whole);
+	project_box(&inverse, request->least, request->greatest, shown);
 	find_depths(whole, &cut->near, &far);
 	cut->distance = (far - cut->near) / request->count;
 	if (cut->distance > 0)

@@ -79,6 +79,11 @@ static const struct gz_surface_kernel *find_surface_kernel(const char *simd)
 	return NULL;
 }
 
+bool gz_surface_caster_present(void)
+{
+	return true;
+}
+
 enum gz_result gz_surface_caster_check(const struct gz_backend_params *params,
 				       const struct gz_log *log)
 {

@@ -6,6 +6,7 @@
 #ifndef GZ_RENDER_SURFACE_CPU_SURFACE_CASTER_H
 #define GZ_RENDER_SURFACE_CPU_SURFACE_CASTER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/log.h"
@@ -16,6 +17,10 @@
 
 /** Surfaces, their tree, and the threads that cast. One thread at a time may use it. */
 struct gz_surface_caster;
+
+/** Whether there is one in this build: it needs Embree. If not, every other call fails with
+ *  GZ_ERR_UNSUPPORTED, and the first two log what is missing. */
+bool gz_surface_caster_present(void);
 
 /** Check parameters. @retval GZ_ERR_UNSUPPORTED  this processor lacks the instruction set; logged
  */

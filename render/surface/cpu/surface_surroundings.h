@@ -28,8 +28,8 @@ SIMD struct rgb floor_or_sky(const struct gz_surface_environment *around, const 
 	vf height = vf_set(-around->floor_mm), tiles = vf_set(0);
 	for (int axis = 0; axis < 3; axis++)
 		height = vf_fma(origin[axis], vf_set(around->axes[0][axis]), height);
-	const vm meets = vm_and(vf_less(vf_set(0), height), vf_less(rise, vf_set(-1e-4F)));
-	const vf distance = height / vf_max(vf_set(0) - rise, vf_set(1e-4F));
+	const vm meets = vm_and(vf_less(vf_set(0), height), vf_less(rise, vf_set(-GZ_FLOOR_FALL)));
+	const vf distance = height / vf_max(vf_set(0) - rise, vf_set(GZ_FLOOR_FALL));
 	for (int side = 1; side < 3; side++) {
 		vf place = vf_set(0);
 		for (int axis = 0; axis < 3; axis++)

@@ -49,10 +49,7 @@ vec3 shade(vec3 colour, vec3 at)
 	float ambient = light_terms.x;
 	if (light_towards.w > 0.0)
 		ambient *= 1.0 - light_towards.w * occlusion_at(at - 0.5);
-	float side = clamp(dot(normal, to_eye) / GZ_LIGHT_FACING, -1.0, 1.0);
-	float diffuse = max(side * dot(normal, light_towards.xyz), 0.0);
-	float cosine = clamp(abs(dot(normal, halfway)), 1e-12, 1.0);
-	float gloss = exp2(light_terms.w * log2(cosine)) * min(diffuse / GZ_LIGHT_FACING, 1.0);
-	vec3 lit = min(fma(colour, vec3(fma(diffuse, light_terms.y, ambient)), full * (gloss * light_terms.z)), full);
+	vec2 light = shine(normal, to_eye, halfway, light_towards.xyz, vec4(ambient, light_terms.yzw));
+	vec3 lit = min(fma(colour, vec3(light.x), full * light.y), full);
 	return fma(vec3(weight), lit - colour, colour);
 }

@@ -1,0 +1,59 @@
+/* In place of the caster where Embree was not found when the project was built. */
+#include "render/surface/cpu/surface_caster.h"
+
+#define GZ_LOG_MODULE "isosurface"
+
+bool gz_surface_caster_present(void)
+{
+	return false;
+}
+
+enum gz_result gz_surface_caster_check(const struct gz_backend_params *params,
+				       const struct gz_log *log)
+{
+	(void)params;
+	gz_err(log, "rays at surfaces are not in this build, because it was made without Embree; "
+		    "install it (libembree-dev) and build again, or take --backend gl");
+	return GZ_ERR_UNSUPPORTED;
+}
+
+enum gz_result gz_surface_caster_create(const struct gz_backend_params *params,
+					const struct gz_log *log,
+					struct gz_surface_caster **out_caster)
+{
+	(void)out_caster;
+	return gz_surface_caster_check(params, log);
+}
+
+enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
+				      const struct gz_object *objects, size_t count)
+{
+	(void)caster, (void)objects, (void)count;
+	return GZ_ERR_UNSUPPORTED;
+}
+
+enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
+				      const struct gz_surface_shot *shot, struct gz_image *image,
+				      const struct gz_surface_planes *planes,
+				      struct gz_frame_stats *out_stats)
+{
+	(void)caster, (void)shot, (void)image, (void)planes, (void)out_stats;
+	return GZ_ERR_UNSUPPORTED;
+}
+
+struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster)
+{
+	(void)caster;
+	return (struct gz_surface_size) { 0 };
+}
+
+const char *gz_surface_caster_describe(const struct gz_surface_caster *caster)
+{
+	(void)caster;
+	return "";
+}
+
+void gz_surface_caster_destroy(struct gz_surface_caster **caster)
+{
+	*caster = NULL;
+}

@@ -1,0 +1,73 @@
+/**
+ * @file
+ * Meshes on the graphics device. They are uploaded once, and drawn by every frame until they
+ * change. All calls need a current context.
+ */
+#ifndef GZ_RENDER_SURFACE_GL_RASTER_MESHES_H
+#define GZ_RENDER_SURFACE_GL_RASTER_MESHES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/opengl/gl_device.h"
+#include "render/surface/gl/raster_view.h"
+#include "render/surface/shared/surface_frame.h"
+#include "render/surface/shared/surface_meshes.h"
+
+/** Attributes of a vertex in shaders. */
+enum gz_raster_attribute { GZ_RASTER_POSITION, GZ_RASTER_NORMAL };
+
+/** One mesh; OpenGL's names. */
+struct gz_raster_mesh {
+	unsigned vertices;   /**< vertex array; 0: the mesh has no triangles */
+	unsigned buffers[3]; /**< positions, normals, triangles */
+	int corners;         /**< three a triangle */
+	int own_corners;     /**< of triangles that no neighbour has too; they come first */
+	uint32_t id;         /**< of the object */
+};
+
+/** All of them. Zero-initialised is empty. */
+struct gz_raster_meshes {
+	struct gz_raster_mesh *items;
+	size_t count;
+	struct gz_raster_box box; /**< around all vertices */
+	uint64_t serial;          /**< increased by every upload */
+	bool uploaded;
+};
+
+/**
+ * Upload the meshes that are listed, in place of those there are.
+ *
+ * @retval GZ_ERR_NO_MEM     the device has no room, or the host for the list; logged
+ * @retval GZ_ERR_NO_DEVICE  the context is lost; logged
+ */
+enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
+				       const struct gz_gl_device *device,
+				       const struct gz_surface_meshes *listed,
+				       const struct gz_log *log);
+
+/** Draw all triangles with the program in use. */
+void gz_raster_meshes_draw(const struct gz_raster_meshes *meshes);
+
+/** Where a program takes the numbers of an object: locations of uniforms. */
+struct gz_raster_locations {
+	int id, colour;
+};
+
+/** Draw what an eye sees: as gz_raster_meshes_draw(), but triangles that two neighbours share only
+ *  from the front, because both lie at the same place. Sets each object's id and colour. */
+void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
+				const struct gz_surface_meshes *listed,
+				const struct gz_surface_look *look,
+				struct gz_raster_locations locations);
+
+/** Delete and forget them. */
+void gz_raster_meshes_free(struct gz_raster_meshes *meshes);
+
+/** Forget them without a context: a lost one took them with it. */
+void gz_raster_meshes_forget(struct gz_raster_meshes *meshes);
+
+#endif

@@ -1,0 +1,4 @@
+// A shadow map has depths alone.
+void main()
+{
+}
