@@ -153,7 +153,7 @@ class Files(WindowCase):
         self.until(lambda p: True, "still there")
         self.tool("key", "q")
         said = self.messages()
-        self.assertIn("notes.txt:1: ", said)
+        self.assertIn("notes.txt: neither a scene nor a volume", said)
         self.assertIn("half.nrrd: ", said)
         self.assertTrue(before)
 
