@@ -7,11 +7,15 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/option.h"
 
 /** Greatest magnitude of an isovalue. Chosen: data in single precision lie below 3.5e38. */
 #define GZ_ISOVALUE_MAX 1e30
+
+/** Most voxels of a volume for GZ_SURFACE_VOXELS: rays read them by 31 bits. */
+#define GZ_SURFACE_VOXELS_MAX ((size_t)INT32_MAX)
 
 /** How rays meet the surface of a volume. */
 enum gz_surface_source {

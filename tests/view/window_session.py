@@ -123,6 +123,43 @@ class Leaves(WindowCase):
         last = read_png(self.path("f%04d.png" % (frames - 1)))
         self.assertTrue(read_png(shot) == last, "the last picture is another")
 
+    def test_isovalue_that_is_dragged_is_found_in_voxels_until_it_rests(self):
+        session = self.path("a.session")
+        done = run(GAZEVIEW, SCENE, "--headless", "--size", "8x8", "--technique", "isosurface",
+                   "--backend", "cpu", env=self.environment)
+        if "Embree" in done.stderr:
+            self.skipTest(done.stderr)
+        self.begin("--technique", "isosurface", "--isovalue", "90", "--method", "uniform",
+                   "--record", session, gaze="0.5,0.5")
+        self.key("p")
+        self.until_idle()
+        self.move(300, 213)  # the section isosurface, whose first row is the isovalue
+        self.tool("click", 1)
+        self.until_idle()
+        self.move(350, 240)
+        self.tool("mousedown", 1)
+        self.until_idle()
+        self.move(390, 240)
+        self.until_idle()
+        self.tool("mouseup", 1)
+        time.sleep(0.4)  # the rest that is tested
+        self.until_idle()
+        self.key("F12")
+        (shot,) = self.appears("gazeview-*.png")
+        self.quit()
+        with open(os.path.join(session, "frames.tsv"), encoding="ascii") as table:
+            lines = [line.split("\t") for line in table.read().splitlines()]
+        changes = [line[1:] for line in lines if line[0] == "!set"]
+        sources = [value for key, value in changes if key == "isosurface.source"]
+        values = [float(value) for key, value in changes if key == "isosurface.isovalue"]
+        self.assertEqual(sources, ["voxels", "triangles"])
+        self.assertEqual(changes[-1][0], "isosurface.source", "the isovalue had triangles")
+        self.assertTrue(values and values[-1] > 90, values)
+        done = run(GAZEVIEW, "--headless", "--replay", session, "--out", self.path("f%04d.png"))
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        last = sorted(glob.glob(self.path("f*.png")))[-1]
+        self.assertTrue(read_png(shot) == read_png(last), "another picture is replayed")
+
     def test_video_of_the_window_has_its_pictures_and_continues_while_nothing_changes(self):
         self.begin("--fps", "20")
         self.key("F10")

@@ -192,7 +192,7 @@ static void add_captured_scene(const struct gz_window *window, struct picture_jo
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	job->has_scene = true;
-	memcpy(&job->settings, &window->shown, sizeof job->settings);
+	memcpy(&job->settings, &window->made, sizeof job->settings);
 	memcpy(&job->transfer, &scene->transfer, sizeof job->transfer);
 	job->volume = &scene->volume;
 	snprintf(job->scene_path, sizeof job->scene_path, "%s", gz_window_scene_path(window));

@@ -148,9 +148,9 @@ static void ask_for_standard(struct gz_window *window)
 	if (!window->compare->worker || !window->any_shown)
 		return;
 	const struct gz_reference_view view = {
-		.camera = window->shown.camera,
-		.rays = window->shown.rays,
-		.image_sampling_rate = window->shown.image_sampling_rate,
+		.camera = window->made.camera,
+		.rays = window->made.rays,
+		.image_sampling_rate = window->made.image_sampling_rate,
 		.width = window->record.width,
 		.height = window->record.height,
 	};

@@ -114,7 +114,7 @@ static void record_frame(struct gz_window *window)
 {
 	struct gz_window_session *self = window->session;
 	const struct gz_frame_request request = {
-		.settings = &window->shown,
+		.settings = &window->made,
 		.display = &window->shown_display,
 		.width = window->record.width,
 		.height = window->record.height,

@@ -54,11 +54,26 @@ static bool gaze_moved(struct gz_window *window, const struct gz_window_gaze *ga
 	       !gz_display_same(&gaze->display, &window->shown_display);
 }
 
+/* A frame could be made with these settings. One without triangles does not prove that there is
+ * room for those of its isovalue. */
+static void note_made(struct gz_window *window, const struct gz_scene_settings *settings)
+{
+	const double proved = window->shown.rays.surface.isovalue;
+	window->made = *settings;
+	window->shown = window->settings;
+	if (window->any_shown && window->without_triangles)
+		window->shown.rays.surface.isovalue = proved;
+	window->any_shown = true;
+}
+
 static enum gz_result cast_picture(struct gz_window *window, const struct gz_window_gaze *gaze,
 				   int width, int height)
 {
+	struct gz_scene_settings settings = window->settings;
+	if (window->without_triangles)
+		settings.rays.surface.source = GZ_SURFACE_VOXELS;
 	const struct gz_frame_request request = {
-		.settings = &window->settings,
+		.settings = &settings,
 		.display = &gaze->display,
 		.width = width,
 		.height = height,
@@ -69,10 +84,9 @@ static enum gz_result cast_picture(struct gz_window *window, const struct gz_win
 	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
 	if (r != GZ_OK)
 		return r;
-	if (!window->any_shown || !gz_scene_settings_same(&window->shown, &window->settings))
+	if (!window->any_shown || !gz_scene_settings_same(&window->made, &settings))
 		window->motion_ns = gz_clock_now_ns();
-	window->shown = window->settings;
-	window->any_shown = true;
+	note_made(window, &settings);
 	window->taken_back = false;
 	if (image)
 		gz_quad_upload(&window->quad, image);

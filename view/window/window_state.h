@@ -54,6 +54,7 @@ struct gz_window {
 	struct gz_window_files *files;
 	struct gz_window_frame_times *frame_times;
 	struct gz_window_gaze_panel *gaze_panel;
+	struct gz_window_isovalue *isovalue;
 	struct gz_window_keys *keys;
 	struct gz_window_latency *latency;
 	struct gz_window_loading *loading;
@@ -77,10 +78,14 @@ struct gz_window {
 	struct gz_viewer_link *link; /**< to the daemon's inlet; NULL: none to be told */
 	int64_t motion_ns; /**< when something moved last that the eye may have followed */
 
-	struct gz_scene_settings settings;  /**< as the user has changed them */
-	struct gz_scene_settings shown;     /**< those of the last frame that could be made */
-	bool any_shown;                     /**< there was such a frame of this scene */
-	bool taken_back;                    /**< a frame with other settings could not be made */
+	struct gz_scene_settings settings; /**< as the user has changed them */
+	struct gz_scene_settings made;     /**< those of the last frame; valid if any_shown */
+	/** Those to go back to if a frame cannot be made: made, but with triangles, and the
+	 * isovalue is the last one that had triangles. */
+	struct gz_scene_settings shown;
+	bool without_triangles; /**< of part isovalue: rays find the surface in the voxels */
+	bool any_shown;         /**< there was such a frame of this scene */
+	bool taken_back;        /**< a frame with other settings could not be made */
 	struct gz_view_scene_tables tables; /**< option tables bound to settings */
 	/** The part that has the window to itself: no other part draws over the picture or has
 	 * keys, and the mouse does not move the camera. NULL: none. */

@@ -180,7 +180,7 @@ static enum gz_result build_field(struct gz_surface_caster *caster, const struct
 		return GZ_OK;
 	field->volume = NULL;
 	field->current = false;
-	if (gz_volume_voxel_count(object->volume) > INT32_MAX) { /* gathers take 31 bits */
+	if (gz_volume_voxel_count(object->volume) > GZ_SURFACE_VOXELS_MAX) {
 		gz_err(caster->log, "the surface in more than 2^31 voxels cannot be found in them; "
 				    "set isosurface.source to triangles");
 		return GZ_ERR_UNSUPPORTED;

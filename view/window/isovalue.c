@@ -1,0 +1,67 @@
+/* The part that shows a surface without triangles while its isovalue changes. */
+#include <math.h>
+
+#include <GLFW/glfw3.h>
+
+#include "render/light/surface_look.h"
+#include "view/frame/isovalue_rest.h"
+#include "view/settings/scene_keys.h"
+#include "view/window/window_state.h"
+
+struct gz_window_isovalue {
+	struct gz_isovalue_rest rest;
+};
+
+static bool is_mouse_held(const struct gz_window *window)
+{
+	return glfwGetMouseButton(window->glfw, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+}
+
+/* Whether triangles are made of the scene's volume, and rays could find the surface without them.
+ * A part that is alone, as an experiment, and a replay show each picture as it is asked for. */
+static bool can_do_without_triangles(const struct gz_window *window,
+				     const struct gz_window_gaze *gaze)
+{
+	const struct gz_volume *volume = &gz_frame_maker_scene(window->maker)->volume;
+	return !window->alone && !gaze->focus &&
+	       window->settings.rays.surface.source == GZ_SURFACE_TRIANGLES &&
+	       gz_setting_applies(&window->settings, "isosurface.isovalue") &&
+	       gz_volume_voxel_count(volume) <= GZ_SURFACE_VOXELS_MAX;
+}
+
+static void forget_isovalue(struct gz_window *window)
+{
+	window->isovalue->rest = (struct gz_isovalue_rest) { 0 };
+	window->without_triangles = false;
+}
+
+static void watch_isovalue(struct gz_window *window, struct gz_window_gaze *gaze)
+{
+	if (!can_do_without_triangles(window, gaze)) {
+		forget_isovalue(window);
+		return;
+	}
+	const bool before = window->without_triangles;
+	window->without_triangles = gz_isovalue_rest_step(&window->isovalue->rest,
+							  window->settings.rays.surface.isovalue,
+							  is_mouse_held(window), gz_clock_now_ns());
+	window->cast_needed = window->cast_needed || window->without_triangles != before;
+}
+
+/* Letting go of the mouse is an event. */
+static double isovalue_patience_s(const struct gz_window *window)
+{
+	return window->without_triangles && !is_mouse_held(window)
+		       ? gz_ns_to_s(gz_isovalue_rest_left_ns(&window->isovalue->rest,
+							     gz_clock_now_ns()))
+		       : INFINITY;
+}
+
+const struct gz_window_part gz_window_isovalue_part = {
+	.name = "isovalue",
+	GZ_PART_STATE(isovalue),
+	.scene_shown = forget_isovalue,
+	.scene_leaving = forget_isovalue,
+	.gaze = watch_isovalue,
+	.patience_s = isovalue_patience_s,
+};
