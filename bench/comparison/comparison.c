@@ -41,7 +41,8 @@ static enum gz_result check_backends(const char *backends, const struct gz_log *
 	const char *rest = backends[0] ? backends : NULL;
 	while (gz_list_next(&rest, name, sizeof name))
 		if (!some_technique_has(name)) {
-			gz_err(log, "'%s': no technique has this backend: cpu, gl", name);
+			gz_err(log, "'%s': no technique has this backend; there are cpu and gl",
+			       name);
 			return GZ_ERR_INVAL;
 		}
 	return GZ_OK;
@@ -55,8 +56,7 @@ static enum gz_result add_method(struct gz_comparison *comparison, const char *t
 	if (result != GZ_OK)
 		return result;
 	if (gz_method_of(&settings.foveation)->needs_table) {
-		gz_err(log, "%s: the method of a table is not compared here: gazebench run does",
-		       text);
+		gz_err(log, "%s: spacing tables cannot be compared here; use gazebench run", text);
 		return GZ_ERR_INVAL;
 	}
 	for (size_t i = 0; i < comparison->method_count; i++)

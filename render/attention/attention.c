@@ -16,8 +16,8 @@ const struct gz_option gz_attention_options[] = {
 	{ "attention.saccade_scale", GZ_OPTION_DOUBLE, AT(saccade_scale), 1, GZ_BUDGET_SCALE_MAX,
 	  .preset = "2", .help = "factor on spacings outside the fovea in a saccade; 1 = none" },
 	{ "attention.landing_deg", GZ_OPTION_DOUBLE, AT(landing_deg), 0, 180, .preset = "6",
-	  .help = "from this predicted size on, a saccade is met where it will land, degrees; 0 = "
-		  "never" },
+	  .help = "in a saccade of at least this predicted size the plan moves to where it will "
+		  "land, degrees; 0 = never" },
 	{ "attention.blink_ms", GZ_OPTION_DOUBLE, AT(blink_ms), 0, 10000, .preset = "500",
 	  .help = "longest blink, and greatest age of a gaze that is used, ms" },
 	{ "attention.hold_ms", GZ_OPTION_DOUBLE, AT(hold_ms), 0, 1e6, .preset = "150",

@@ -34,8 +34,8 @@ struct gz_attention_params {
 	double dead_band_deg;   /**< the plan moves when the gaze is farther away than this */
 	double dead_band_noise; /**< and farther than so many times the tracker's noise */
 	double saccade_scale;   /**< factor on spacings outside the fovea in a saccade */
-	double landing_deg;     /**< a saccade of this predicted size is met where it will land; 0:
-				   none */
+	double landing_deg;     /**< in a saccade of at least this predicted size the plan moves to
+				   where it will land; 0: never */
 	double blink_ms;        /**< longest blink; also the greatest age of a gaze */
 	double hold_ms;         /**< how long the plan of a lost gaze is kept */
 	double widen_ms;        /**< how long the plan then takes to become uniform; 0: it stays */

@@ -11,7 +11,8 @@ static const char *const surroundings_names[] = { "none", "sky", "cube", NULL };
 const struct gz_option gz_environment_options[] = {
 	{ "environment.kind", GZ_OPTION_CHOICE, AT(kind), .choices = surroundings_names,
 	  .preset = "none",
-	  .help = "surroundings: none (render.background), sky, with a sun, or cube" },
+	  .help = "surroundings: none (render.background), sky (with a sun) or cube (six "
+		  "pictures)" },
 	{ "environment.cube", GZ_OPTION_STRING, AT(cube), .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "cube: folder of right, left, front, back, up and down.png; searched beside the "
 		  "scene, then under $GAZECAST_DATA" },

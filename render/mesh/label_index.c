@@ -30,8 +30,8 @@ static bool is_label_number(double value)
 static enum gz_result refuse_value(const char *name, double value, const struct gz_log *log)
 {
 	gz_err(log,
-	       "%s is no volume of labels: it has the value %g; labels are whole numbers, and 0 "
-	       "is where there is none",
+	       "%s is no volume of labels: it has the value %g; labels are whole numbers, 0 for "
+	       "no label",
 	       name, value);
 	return GZ_ERR_FORMAT;
 }

@@ -234,10 +234,9 @@ static bool has_other_size_than_named(const char *path, uint64_t bytes, const st
 	if (wanted == bytes)
 		return false;
 	gz_err(log,
-	       "%s: the name tells %d x %d x %d %s, which are %llu bytes, but it holds %llu; fetch "
-	       "it "
-	       "again, or give the layout that it has, as in --volume.dims \"256 256 128\" "
-	       "--volume.type uint8",
+	       "%s: the file name says %d x %d x %d %s, which is %llu bytes, but the file has "
+	       "%llu; copy it again, or give its layout, as in --volume.dims "
+	       "\"256 256 128\" --volume.type uint8",
 	       path, layout->dims[0], layout->dims[1], layout->dims[2],
 	       gz_raw_type_names[layout->type], (unsigned long long)wanted,
 	       (unsigned long long)bytes);

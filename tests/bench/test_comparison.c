@@ -225,7 +225,7 @@ static void calls_that_are_not_understood_are_refused(void **state)
 	};
 	static const char *const said[] = {
 		"no scene",     "--out", "no technique has this backend",
-		"not a number", "mdc",   "gazebench run does"
+		"not a number", "mdc",   "use gazebench run"
 	};
 	for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
 		place_run(place, calls[i]);

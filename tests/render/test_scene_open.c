@@ -273,7 +273,7 @@ static void raw_file_opens_with_a_given_or_a_certain_layout(void **state)
 	assert_refused(told, NULL, GZ_ERR_INVAL,
 		       "told.raw: raw data without a header; give its layout");
 	assert_refused(files_write("cut_2048x2048x2048_uint8.raw", voxels, sizeof voxels), NULL,
-		       GZ_ERR_INVAL, "2048 x 2048 x 2048 uint8, which are 8589934592 bytes");
+		       GZ_ERR_INVAL, "2048 x 2048 x 2048 uint8, which is 8589934592 bytes");
 	assert_refused(files_write("a_4x4x4.raw", voxels, sizeof voxels), NULL, GZ_ERR_INVAL,
 		       "--volume.dims \"4 4 4\" --volume.type uint16 would fit");
 }

@@ -96,7 +96,7 @@ static void reset_light(struct gz_window *window, int number)
 static const struct gz_window_action light_actions[] = {
 	{ .letter = 'w',
 	  .keys = "W",
-	  .help = "light from where the scene has it; Ctrl+drag moves it",
+	  .help = "put the light back where the scene has it; Ctrl+drag moves it",
 	  .applies = is_lit,
 	  .run = reset_light },
 };

@@ -181,8 +181,9 @@ static enum gz_result build_field(struct gz_surface_caster *caster, const struct
 	field->volume = NULL;
 	field->current = false;
 	if (gz_volume_voxel_count(object->volume) > GZ_SURFACE_VOXELS_MAX) {
-		gz_err(caster->log, "the surface in more than 2^31 voxels cannot be found in them; "
-				    "set isosurface.source to triangles");
+		gz_err(caster->log,
+		       "isosurface.source = voxels takes at most 2^31 voxels; set it to "
+		       "triangles");
 		return GZ_ERR_UNSUPPORTED;
 	}
 	const enum gz_result result = gz_macrocells_build(object->volume, &field->cells);
