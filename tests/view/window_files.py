@@ -100,6 +100,23 @@ class Files(WindowCase):
             self.press("Return")
         return done
 
+    def test_surface_shown_is_written_as_a_mesh_by_write_mesh(self):
+        wanted, path = os.path.join(self.folder, "wanted.ply"), os.path.join(self.folder, "a.ply")
+        done = run(GAZEVIEW, "--write-mesh", wanted, "--isovalue", "90", SCENE,
+                   env=self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.start("--gaze", "0.5,0.5", "--method", "uniform", "--technique", "isosurface",
+                   "--isovalue", "90")
+        self.keys("ctrl+e")
+        self.until(self.dialog_there, "the dialog")
+        self.enter_text(path)
+        self.until(lambda p: self.pressed_until(not self.dialog_there(p)), "no dialog")
+        self.wait_for(lambda: os.path.exists(path), path)
+        with open(path, "rb") as one, open(wanted, "rb") as other:
+            self.assertTrue(one.read() == other.read(), "another mesh")
+        self.viewer.terminate()
+        self.assertRegex(self.messages(), r"a\.ply written, [1-9]\d* triangles")
+
     def test_dropped_volume_is_shown(self):
         self.start("--gaze", "mouse", "--method", "standard")
         before = self.rest()

@@ -3,12 +3,10 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "base/workers.h"
-#include "render/mesh/isosurface.h"
 #include "render/mesh/mesh_file.h"
 #include "render/mesh/mesh_measure.h"
+#include "view/capture/mesh_output.h"
 #include "view/capture/output.h"
 #include "view/headless/headless.h"
 
@@ -32,31 +30,7 @@ static void print_mesh(const char *path, const struct gz_mesh *mesh, bool made_c
 	printf(" euler %" PRId64 " border %zu\n", measures.euler, measures.border_edges);
 }
 
-static enum gz_result make_mesh(const struct gz_view_options *options,
-				const struct gz_volume *volume, const struct gz_log *log,
-				struct gz_mesh *out_mesh)
-{
-	const struct gz_isosurface_request request = {
-		.volume = volume,
-		.isovalue = options->isovalue,
-	};
-	struct gz_workers *workers = NULL;
-	/* Without further threads the calling one does all. */
-	(void)gz_workers_create(options->threads, &workers);
-	const enum gz_result r = gz_isosurface_make(&request, workers, log, out_mesh);
-	gz_workers_destroy(&workers);
-	return r;
-}
-
 /* ---- labels ---- */
-
-static size_t count_labels(const struct gz_scene *scene)
-{
-	size_t count = 0;
-	for (size_t i = 0; scene->labels && i < scene->settings.objects.count; i++)
-		count += scene->labels[i].count;
-	return count;
-}
 
 /* A line for each label, and the file. */
 static enum gz_result write_parts(const struct gz_mesh_part *parts, size_t count, const char *path,
@@ -77,21 +51,11 @@ static enum gz_result write_parts(const struct gz_mesh_part *parts, size_t count
 static enum gz_result write_labels(const struct gz_scene *scene, const char *path,
 				   const struct gz_log *log)
 {
+	struct gz_mesh_part *parts = NULL;
 	size_t count = 0;
-	struct gz_mesh_part *parts = calloc(count_labels(scene) + 1, sizeof *parts);
-	if (!parts) {
-		gz_err(log, "%s: no memory for its labels", path);
-		return GZ_ERR_NO_MEM;
-	}
-	for (size_t i = 0; i < scene->settings.objects.count; i++)
-		for (size_t k = 0; k < scene->labels[i].count; k++) {
-			const struct gz_label_surface *label = &scene->labels[i].items[k];
-			struct gz_mesh_part *part = &parts[count++];
-			part->mesh = &label->mesh;
-			part->label = label->number;
-			memcpy(part->colour, label->colour, sizeof part->colour);
-		}
-	const enum gz_result r = write_parts(parts, count, path, log);
+	enum gz_result r = gz_mesh_output_parts(scene, log, &parts, &count);
+	if (r == GZ_OK)
+		r = write_parts(parts, count, path, log);
 	free(parts);
 	return r;
 }
@@ -107,7 +71,8 @@ static enum gz_result write_surface(const struct gz_view_options *options,
 			    "surface lies");
 		return GZ_ERR_INVAL;
 	}
-	enum gz_result r = make_mesh(options, &scene->volume, log, &mesh);
+	enum gz_result r = gz_mesh_output_make(&scene->volume, options->isovalue, options->threads,
+					       log, &mesh);
 	if (r != GZ_OK)
 		return r;
 	r = gz_mesh_write(&mesh, options->write_mesh, log);

@@ -395,9 +395,10 @@ bool gz_raw_panel_draw(struct gz_raw_panel *panel)
 
 /* ---- save ---- */
 
-void gz_save_panel_show(struct gz_save_panel *panel, const char *path)
+void gz_save_panel_show(struct gz_save_panel *panel, const struct gz_save_words *words,
+			const char *path)
 {
-	*panel = (struct gz_save_panel) { .open = true, .focus_wanted = true };
+	*panel = (struct gz_save_panel) { .open = true, .words = words, .focus_wanted = true };
 	snprintf(panel->path, sizeof panel->path, "%s", path);
 }
 
@@ -415,7 +416,7 @@ static bool is_question_open(const struct gz_save_panel *panel)
 
 static bool draw_save_field(struct gz_save_panel *panel)
 {
-	gz_widget_text(gz_paint_plain, "The scene with its present settings is saved as:");
+	gz_widget_text(gz_paint_plain, panel->words->what);
 	if (panel->focus_wanted)
 		gz_widgets_focus_next();
 	panel->focus_wanted = false;
@@ -433,7 +434,7 @@ bool gz_save_panel_draw(struct gz_save_panel *panel, bool *out_sure)
 	bool saved = false;
 	if (!panel->open)
 		return false;
-	if (gz_panel_begin("Save the scene", &place, &panel->open)) {
+	if (gz_panel_begin(panel->words->title, &place, &panel->open)) {
 		saved = draw_save_field(panel);
 		const bool asked = is_question_open(panel);
 		*out_sure = asked;
@@ -441,7 +442,7 @@ bool gz_save_panel_draw(struct gz_save_panel *panel, bool *out_sure)
 			gz_widget_text(gz_paint_amber, panel->question);
 		if (panel->message[0])
 			gz_widget_text(gz_paint_amber, panel->message);
-		saved |= gz_widget_button(asked ? "Replace" : "Save");
+		saved |= gz_widget_button(asked ? "Replace" : panel->words->verb);
 		gz_widgets_same_line(0);
 		if (gz_widget_button("Cancel") || gz_dialog_escaped())
 			panel->open = false;

@@ -62,9 +62,17 @@ void gz_raw_panel_show(struct gz_raw_panel *panel, const char *path);
  *  closed. The layout has the file's size, unless that is not known */
 bool gz_raw_panel_draw(struct gz_raw_panel *panel);
 
-/** The dialog that asks where a scene is saved. */
+/** What a dialog that saves says. Static texts. */
+struct gz_save_words {
+	const char *title; /**< of the dialog; unique among panels */
+	const char *what;  /**< one line: what is saved */
+	const char *verb;  /**< on the button that does it */
+};
+
+/** The dialog that asks where something is saved. */
 struct gz_save_panel {
 	bool open;
+	const struct gz_save_words *words;    /**< borrowed */
 	char path[GZ_PATH_SIZE];              /**< as typed */
 	char asked[GZ_PATH_SIZE];             /**< path that the question is about */
 	char question[GZ_PANEL_MESSAGE_SIZE]; /**< to be confirmed before saving; empty: none */
@@ -72,8 +80,9 @@ struct gz_save_panel {
 	bool focus_wanted;                    /**< the field gets the keyboard in the next frame */
 };
 
-/** Open the dialog with a suggested path. */
-void gz_save_panel_show(struct gz_save_panel *panel, const char *path);
+/** Open the dialog with a suggested path. @param words  borrowed until it is closed */
+void gz_save_panel_show(struct gz_save_panel *panel, const struct gz_save_words *words,
+			const char *path);
 
 /** Ask a question before saving to the path in the field. It is confirmed by the next
  *  gz_save_panel_draw() that returns true, if the path is still the same. */

@@ -17,6 +17,12 @@
 
 #define GZ_LOG_MODULE "window"
 
+static const struct gz_save_words scene_words = {
+	.title = "Save the scene",
+	.what = "The scene with its present settings is saved as:",
+	.verb = "Save",
+};
+
 struct gz_window_files {
 	struct gz_open_panel open_panel;
 	struct gz_raw_panel raw_panel;
@@ -204,7 +210,7 @@ static void show_save_panel(struct gz_window *window, int number)
 		return;
 	}
 	gz_scene_save_suggest(gz_window_scene_path(window), path);
-	gz_save_panel_show(&window->files->save_panel, path);
+	gz_save_panel_show(&window->files->save_panel, &scene_words, path);
 	gz_window_wake_panels(window);
 }
 

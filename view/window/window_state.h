@@ -58,6 +58,7 @@ struct gz_window {
 	struct gz_window_keys *keys;
 	struct gz_window_latency *latency;
 	struct gz_window_loading *loading;
+	struct gz_window_mesh_export *mesh_export;
 	struct gz_window_notices *notices_state;
 	struct gz_overlay *overlay;
 	struct gz_window_replay *replay;
