@@ -109,10 +109,28 @@ static void technique_follows_the_settings_and_a_refused_one_changes_nothing(voi
 	end_switching(&all);
 }
 
+static void slices_are_refused_once_in_a_picture_on_cpu(void **state)
+{
+	(void)state;
+	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT];
+	struct switching all = { 0 };
+	begin_switching(&all);
+	make_with(&all, 0, first);
+	assert_true(gz_frame_cpu_suffices(all.maker));
+	make_with(&all, choice_of("slices"), second);
+	assert_memory_equal(first, second, sizeof first);
+	assert_non_null(strstr(all.captured.last, "slices: refused"));
+	const int told = all.captured.messages;
+	make_with(&all, choice_of("slices"), second);
+	assert_int_equal(all.captured.messages, told);
+	end_switching(&all);
+}
+
 TEST_SUITE(technique_switch)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(technique_follows_the_settings_and_a_refused_one_changes_nothing),
+		cmocka_unit_test(slices_are_refused_once_in_a_picture_on_cpu),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@ import re
 import sys
 import unittest
 
-from picture import run
+from picture import PATIENCE_S, run
 from window_case import CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, SCENE, SIZE, WindowCase
 
 WIDTH, HEIGHT = SIZE
@@ -189,6 +189,13 @@ class PictureWindow(WindowCase):
         return sum(picture.at(x, y) == (255, 220, 90)
                    for x in range(MIDDLE - 80, MIDDLE + 80)
                    for y in range(HEIGHT // 2 - 80, HEIGHT // 2 + 80))
+
+    def test_slices_are_drawn_by_opengl_unless_the_backend_is_named(self):
+        self.start("--gaze", "0.5,0.5", "--method", "standard", "--technique", "slices",
+                   "--slices.count", "16")
+        self.viewer.terminate()
+        self.assertNotIn("slices has no backend", self.viewer.communicate(timeout=PATIENCE_S)[1])
+        self.viewer = None
 
     def test_saved_view_shows_the_same_picture_again(self):
         self.start(*STILL, "--method", "standard")

@@ -229,6 +229,17 @@ bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_cont
 	return cpu;
 }
 
+bool gz_frame_cpu_suffices(const struct gz_frame_maker *maker)
+{
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	const size_t count =
+		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
+	for (size_t i = 0; i < count; i++)
+		if (!gz_technique_has_backend(objects[i].technique, "cpu"))
+			return false;
+	return true;
+}
+
 void gz_frame_maker_stop(struct gz_frame_maker *maker)
 {
 	gz_picture_maker_destroy(&maker->pictures);

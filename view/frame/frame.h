@@ -86,6 +86,10 @@ enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
 bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
 			const struct gz_log *log);
 
+/** Whether the cpu backend can draw all techniques of the scene. If not, gz_frame_maker_start()
+ * must choose. */
+bool gz_frame_cpu_suffices(const struct gz_frame_maker *maker);
+
 /** Destroy the renderer while its context exists. Another one may be started. */
 void gz_frame_maker_stop(struct gz_frame_maker *maker);
 

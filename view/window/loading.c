@@ -99,7 +99,7 @@ static enum gz_result load_job_scene(struct load_job *job)
 					    .series_list = job->series };
 	enum gz_result r =
 		gz_frame_maker_create(job->options, &scene, &loading, job->log, &job->maker);
-	if (r == GZ_OK && job->cpu)
+	if (r == GZ_OK && job->cpu && gz_frame_cpu_suffices(job->maker))
 		r = gz_frame_maker_start_cpu(job->maker, job->options);
 	if (r == GZ_OK && atomic_load(&job->cancelled))
 		r = GZ_ERR_CANCELLED;
