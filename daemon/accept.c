@@ -15,35 +15,46 @@
 /* Ports at which connections come through the door. */
 enum { PORTS_MAX = 4 };
 
-/* libzmq calls without a context of ours, so there is one door for the program. */
+/* libzmq calls without a context of ours, so these are the doors of the program. */
 static pthread_mutex_t door_mutex = PTHREAD_MUTEX_INITIALIZER;
-static _Atomic(struct gz_door *) the_door;
-static uint16_t door_ports[PORTS_MAX];
-static size_t door_port_count;
+static struct opening {
+	struct gz_door *door;
+	uint16_t port;
+} openings[PORTS_MAX];
+static _Atomic int opening_count;
 
-/* Which connections may be the door's. No part of the door, which may end while libzmq reads. */
-static _Atomic bool at_door[GZ_QUOTA_DESCRIPTORS];
+/* At which opening the connections are, from 1 on; 0: none. No part of a door, which may end while
+ * libzmq reads. */
+static _Atomic uint8_t opening_of[GZ_QUOTA_DESCRIPTORS];
 
-static void note_at_door(int fd, bool is_there)
+static void note_opening(int fd, int number)
 {
 	if (fd >= 0 && fd < GZ_QUOTA_DESCRIPTORS)
-		atomic_store_explicit(&at_door[fd], is_there, memory_order_relaxed);
+		atomic_store_explicit(&opening_of[fd], (uint8_t)number, memory_order_relaxed);
 }
 
-static bool is_at_door(int fd)
+static int noted_opening(int fd)
 {
-	return fd >= 0 && fd < GZ_QUOTA_DESCRIPTORS &&
-	       atomic_load_explicit(&at_door[fd], memory_order_relaxed);
+	return fd >= 0 && fd < GZ_QUOTA_DESCRIPTORS
+		       ? atomic_load_explicit(&opening_of[fd], memory_order_relaxed)
+		       : 0;
+}
+
+bool gz_accept_was_asked(int fd)
+{
+	return noted_opening(fd) > 0;
 }
 
 void gz_accept_through(struct gz_door *door, uint16_t port)
 {
 	pthread_mutex_lock(&door_mutex);
-	if (door != atomic_load(&the_door))
-		door_port_count = 0;
-	if (door && door_port_count < PORTS_MAX)
-		door_ports[door_port_count++] = port;
-	atomic_store(&the_door, door);
+	int count = atomic_load(&opening_count);
+	if (!door)
+		atomic_store(&opening_count, 0);
+	if (door && count < PORTS_MAX) {
+		openings[count] = (struct opening) { .door = door, .port = port };
+		atomic_store(&opening_count, count + 1);
+	}
 	pthread_mutex_unlock(&door_mutex);
 }
 
@@ -63,13 +74,15 @@ static uint16_t local_tcp_port(int fd)
 	return address.any.sa_family == AF_INET6 ? ntohs(address.v6.sin6_port) : 0;
 }
 
-static bool is_door_port(uint16_t port)
+/* @return the number of the opening, from 1 on; 0: none */
+static int find_opening(uint16_t port)
 {
-	for (size_t i = 0; i < door_port_count; i++) {
-		if (door_ports[i] == port)
-			return true;
+	int count = atomic_load(&opening_count);
+	for (int i = 0; i < count; i++) {
+		if (openings[i].port == port)
+			return i + 1;
 	}
-	return false;
+	return 0;
 }
 
 /* Whether the connection may stay. */
@@ -77,14 +90,16 @@ static bool ask_to_enter(int fd)
 {
 	bool welcome = true;
 	uint16_t port = local_tcp_port(fd);
+	int64_t now_ns = gz_clock_now_ns();
 	pthread_mutex_lock(&door_mutex);
-	struct gz_door *door = atomic_load(&the_door);
-	note_at_door(fd, door && is_door_port(port));
+	int number = find_opening(port);
+	note_opening(fd, number);
 	/* The number may be that of a connection that ended unnoticed. */
-	if (door && !is_door_port(port))
-		gz_door_leave(door, fd, gz_clock_now_ns());
-	else if (door)
-		welcome = gz_door_enter(door, fd, gz_connection_identity(fd), gz_clock_now_ns());
+	for (int i = 0; i < atomic_load(&opening_count); i++)
+		gz_door_leave(openings[i].door, fd, now_ns);
+	if (number > 0)
+		welcome = gz_door_enter(openings[number - 1].door, fd, gz_connection_identity(fd),
+					now_ns);
 	pthread_mutex_unlock(&door_mutex);
 	return welcome;
 }
@@ -105,7 +120,7 @@ int gz_accept4(int fd, struct sockaddr *address, socklen_t *size, int flags)
 			errno = EAGAIN;
 		return accepted;
 	}
-	if (!atomic_load(&the_door) || ask_to_enter(accepted))
+	if (atomic_load(&opening_count) == 0 || ask_to_enter(accepted))
 		return accepted;
 	turn_away(accepted);
 	errno = EAGAIN;
@@ -122,10 +137,12 @@ static ssize_t ask_to_pass(int fd, const void *bytes, ssize_t received)
 {
 	const int error = errno;
 	pthread_mutex_lock(&door_mutex);
-	struct gz_door *door = atomic_load(&the_door);
+	int number = noted_opening(fd);
+	bool is_open = number > 0 && number <= atomic_load(&opening_count);
+	struct gz_door *door = is_open ? openings[number - 1].door : NULL;
 	bool is_end = received == 0 || (received < 0 && error != EAGAIN && error != EINTR);
 	if (is_end)
-		note_at_door(fd, false);
+		note_opening(fd, 0);
 	if (door && is_end)
 		gz_door_leave(door, fd, gz_clock_now_ns());
 	else if (door && received > 0 &&
@@ -140,7 +157,7 @@ static ssize_t ask_to_pass(int fd, const void *bytes, ssize_t received)
 ssize_t gz_recv(int fd, void *bytes, size_t size, int flags)
 {
 	ssize_t received = syscall(SYS_recvfrom, fd, bytes, size, flags, NULL, NULL);
-	if (size == 0 || flags & MSG_PEEK || !is_at_door(fd))
+	if (size == 0 || flags & MSG_PEEK || !gz_accept_was_asked(fd))
 		return received;
 	return ask_to_pass(fd, bytes, received);
 }

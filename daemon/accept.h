@@ -7,7 +7,7 @@
  * - libzmq 4.3.4 calls abort() if a local socket cannot accept a connection because no file
  *   descriptor or no memory is left; it tolerates that over TCP. The quota (quota.h) ends
  *   connections beyond its limit, but a burst may come faster than it is counted.
- * - libzmq takes every reader and all its subscriptions. The door (door.h) is asked first.
+ * - libzmq takes every client and all it sends. The door (door.h) is asked first.
  */
 #ifndef GZ_DAEMON_ACCEPT_H
 #define GZ_DAEMON_ACCEPT_H
@@ -34,14 +34,17 @@ ssize_t gz_recv(int fd, void *bytes, size_t size, int flags) __asm__("recv");
 bool gz_accept_is_found(void);
 
 /**
- * Ask a door about connections from now on.
+ * Ask a door about connections at a port from now on.
  *
- * @param door  borrowed until this is called again; NULL: ask none. Only one door is asked.
+ * @param door  borrowed until the call with NULL, after which no door is asked
  * @param port  local TCP port at which connections come through it, in the host's byte order; up to
- *              four ports of one door are kept, further ones ignored
+ *              four ports are kept, further ones ignored
  *
  * Threads: any.
  */
 void gz_accept_through(struct gz_door *door, uint16_t port);
+
+/** Whether connection @p fd came through a door. Threads: any. */
+bool gz_accept_was_asked(int fd);
 
 #endif

@@ -28,10 +28,14 @@ struct visitor {
 	struct gz_zmtp_input input;
 	uint64_t cost;
 	uint64_t strange;
-	bool useful; /* has subscribed to what the daemon sends */
+	bool useful;      /* has subscribed to what the daemon sends, or can send */
+	uint64_t unknown; /* bytes of a sender whose frames are not told apart */
+	uint64_t message; /* bytes of a sender's unfinished message */
+	struct leak own;  /* of what a sender has for itself */
 };
 
 struct gz_door {
+	enum gz_door_kind kind;
 	uint32_t count;
 	int end; /* no visitor has had a descriptor from here on */
 	uint64_t arrivals;
@@ -39,6 +43,7 @@ struct gz_door {
 	int64_t full_ns;  /* when there was no room last */
 	int64_t full_since_ns;
 	struct leak arrived, settling, shared;
+	_Atomic uint64_t held; /* of senders, by libzmq */
 	_Atomic uint64_t refused[GZ_QUOTA_REASON_COUNT];
 	size_t topic_count;
 	char topics[GZ_DOOR_TOPICS_MAX][GZ_ZMTP_TOPIC_SIZE];
@@ -61,7 +66,7 @@ static void leak_out(struct leak *leak, uint64_t per_s, int64_t now_ns)
 	leak->since_ns = now_ns;
 }
 
-enum gz_result gz_door_create(struct gz_door **out_door)
+enum gz_result gz_door_create(enum gz_door_kind kind, struct gz_door **out_door)
 {
 	/* Beginnings of what Pupil Capture sends are known too: its readers ask for them. */
 	static const char *const known[] = {
@@ -96,6 +101,7 @@ enum gz_result gz_door_create(struct gz_door **out_door)
 	struct gz_door *door = calloc(1, sizeof *door);
 	if (!door)
 		return GZ_ERR_NO_MEM;
+	door->kind = kind;
 	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
 		gz_door_know(door, known[i]);
 	*out_door = door;
@@ -270,11 +276,56 @@ static bool is_bearable(struct gz_door *door, const struct visitor *before, stru
 	return true;
 }
 
+/* @param[in,out] held  what libzmq will hold of it */
+static void charge_sent_frame(struct visitor *visitor, const struct gz_zmtp_frame *frame,
+			      uint64_t *held)
+{
+	visitor->useful = true;
+	if (frame->kind == GZ_ZMTP_UNKNOWN)
+		visitor->unknown += frame->size;
+	if (frame->kind == GZ_ZMTP_UNKNOWN || frame->kind == GZ_ZMTP_COMMAND)
+		return;
+	*held += frame->body_size + GZ_DOOR_FRAME_COST;
+	visitor->message += frame->body_size + GZ_DOOR_FRAME_COST;
+	if (!frame->more)
+		visitor->message = 0;
+}
+
+/* Whether libzmq may hold @p held bytes more, which the visitor has sent. */
+static bool may_be_held(struct gz_door *door, struct visitor *visitor, uint64_t held,
+			int64_t now_ns)
+{
+	leak_out(&visitor->own, GZ_DOOR_SENDER_BYTES_PER_S, now_ns);
+	uint64_t own = visitor->own.level + held;
+	uint64_t all = atomic_load_explicit(&door->held, memory_order_relaxed) + held;
+	if (visitor->message > GZ_DOOR_MESSAGE_MAX || visitor->unknown > GZ_DOOR_STRANGE_EACH ||
+	    (all > GZ_DOOR_HELD && own > GZ_DOOR_SENDER_BYTES))
+		return false;
+	visitor->own.level = own < GZ_DOOR_SENDER_BYTES ? own : GZ_DOOR_SENDER_BYTES;
+	atomic_fetch_add_explicit(&door->held, held, memory_order_relaxed);
+	return true;
+}
+
+/* Read what the visitor has sent. @return whether libzmq may take it */
+static bool admit_bytes(struct gz_door *door, struct visitor *visitor, const unsigned char *at,
+			size_t size, int64_t now_ns)
+{
+	const struct visitor before = *visitor;
+	struct gz_zmtp_frame frame;
+	uint64_t held = 0;
+	while (gz_zmtp_next(&visitor->input, &at, &size, &frame)) {
+		if (door->kind == GZ_DOOR_READERS)
+			charge_frame(door, visitor, &frame);
+		else
+			charge_sent_frame(visitor, &frame, &held);
+	}
+	return door->kind == GZ_DOOR_READERS ? is_bearable(door, &before, visitor, now_ns)
+					     : may_be_held(door, visitor, held, now_ns);
+}
+
 bool gz_door_pass(struct gz_door *door, int fd, uint64_t identity, const void *bytes, size_t size,
 		  int64_t now_ns)
 {
-	const unsigned char *at = bytes;
-	struct gz_zmtp_frame frame;
 	if (fd < 0 || fd >= GZ_QUOTA_DESCRIPTORS || !door->present[fd])
 		return true;
 	if (door->visitors[fd].identity != identity) {
@@ -282,9 +333,7 @@ bool gz_door_pass(struct gz_door *door, int fd, uint64_t identity, const void *b
 		return true;
 	}
 	struct visitor visitor = door->visitors[fd];
-	while (gz_zmtp_next(&visitor.input, &at, &size, &frame))
-		charge_frame(door, &visitor, &frame);
-	if (is_bearable(door, &door->visitors[fd], &visitor, now_ns)) {
+	if (admit_bytes(door, &visitor, bytes, size, now_ns)) {
 		door->visitors[fd] = visitor;
 		return true;
 	}
@@ -297,6 +346,20 @@ void gz_door_leave(struct gz_door *door, int fd, int64_t now_ns)
 {
 	if (fd >= 0 && fd < GZ_QUOTA_DESCRIPTORS)
 		forget_visitor(door, fd, now_ns);
+}
+
+void gz_door_took(struct gz_door *door, size_t size)
+{
+	uint64_t held = atomic_load_explicit(&door->held, memory_order_relaxed), rest;
+	do {
+		uint64_t part = (uint64_t)size + GZ_DOOR_FRAME_COST;
+		rest = held > part ? held - part : 0;
+	} while (!atomic_compare_exchange_weak(&door->held, &held, rest));
+}
+
+void gz_door_emptied(struct gz_door *door)
+{
+	atomic_store_explicit(&door->held, 0, memory_order_relaxed);
 }
 
 uint64_t gz_door_refused(const struct gz_door *door, enum gz_quota_reason reason)

@@ -1,14 +1,18 @@
 /**
  * @file
- * The door through which readers without keys come: what they send is counted before libzmq takes
- * it.
+ * The doors through which clients without keys come, one for readers, one for each socket that
+ * takes messages: what they send is counted before libzmq takes it.
  *
- * libzmq 4.3.4 keeps all subscriptions of a socket in one tree with a node for each byte. When a
- * connection ends, it walks the whole tree in the thread of the stream: connections times bytes. So
- * what is in the tree, how many connections there are and how many come in a second is limited,
- * such that the walks take a fraction of that thread. Topics that the daemon sends share their
- * nodes and cost nothing; others are strange. A reader that subscribes to what the daemon sends
- * comes in whatever strange ones do.
+ * Readers: libzmq 4.3.4 keeps all subscriptions of a socket in one tree with a node for each byte.
+ * When a connection ends, it walks the whole tree in the thread of the stream: connections times
+ * bytes. So what is in the tree, how many connections there are and how many come in a second is
+ * limited, such that the walks take a fraction of that thread. Topics that the daemon sends share
+ * their nodes and cost nothing; others are strange. A reader that subscribes to what the daemon
+ * sends comes in whatever strange ones do.
+ *
+ * Senders: libzmq keeps messages until the daemon takes them, and limits their number and the size
+ * of a frame for each connection, not bytes, frames of a message, or connections. The door limits
+ * these: what libzmq holds is what has passed less what the daemon has taken.
  *
  * The limits hold without a race, because accept.h asks in the middle of libzmq's own calls.
  */
@@ -22,14 +26,21 @@
 #include "base/result.h"
 #include "daemon/quota.h"
 
-/** Most connections. If a further one comes, an old one is ended: one that has not subscribed to
- * anything the daemon sends for GZ_DOOR_HANDSHAKE_MS, else one that does not read what it is sent,
- * else one that came later than GZ_DOOR_NEW_MS before the house became full; the oldest of each
- * first. If there is none of these, the new one is refused. Chosen: a laboratory has some tens, and
- * the stream at 1000 Hz can serve these. */
+/** Who comes through a door. */
+enum gz_door_kind {
+	GZ_DOOR_READERS, /**< they subscribe and get messages */
+	GZ_DOOR_SENDERS, /**< they send messages: of the inlet, or requests */
+};
+
+/** Most connections of a door. If a further one comes, an old one is ended: one that has not
+ * subscribed to anything the daemon sends, or as a sender not finished the handshake, for
+ * GZ_DOOR_HANDSHAKE_MS, else one that does not read what it is sent, else one that came later than
+ * GZ_DOOR_NEW_MS before the house became full; the oldest of each first. If there is none of these,
+ * the new one is refused. Chosen: a laboratory has some tens, and the stream at 1000 Hz can serve
+ * these. */
 #define GZ_DOOR_CONNECTIONS 256
 
-/** How long a reader may take to subscribe, ms, if others want its place. Chosen: a hundred times
+/** How long a client may take to do so, ms, if others want its place. Chosen: a hundred times
  * what a reader on this machine needs. */
 #define GZ_DOOR_HANDSHAKE_MS 250
 
@@ -73,19 +84,35 @@
 #define GZ_DOOR_SHARED_COST       65536
 #define GZ_DOOR_SHARED_COST_PER_S 16384
 
+/** Most bytes of messages that libzmq holds of all senders of a door, each frame with
+ * GZ_DOOR_FRAME_COST. Chosen: seven senders that each have a queue full of the largest messages. */
+#define GZ_DOOR_HELD (32 * 1024 * 1024)
+
+/** What a sender has for itself beyond that, bytes at once and for each second. Chosen: a hundred
+ * annotations at once, and fifty a second. */
+#define GZ_DOOR_SENDER_BYTES       32768
+#define GZ_DOOR_SENDER_BYTES_PER_S 16384
+
+/** What each frame costs besides its bytes: zmq_msg_t. */
+#define GZ_DOOR_FRAME_COST 64
+
+/** Most bytes of one message, counted like that. Chosen: the largest request with its envelope. */
+#define GZ_DOOR_MESSAGE_MAX (80 * 1024)
+
 /** Most topics that gz_door_know() keeps. */
 #define GZ_DOOR_TOPICS_MAX 64
 
-/** A door. One thread at a time, except for gz_door_refused(). */
+/** A door. One thread at a time, except for gz_door_took(), gz_door_emptied() and
+ * gz_door_refused(). */
 struct gz_door;
 
 /**
- * Create a door without connections, which knows the topics of the protocol.
+ * Create a door without connections. One for readers knows the topics of the protocol.
  *
  * @param[out] out_door  owned by the caller: gz_door_destroy()
  * @retval GZ_ERR_NO_MEM  no memory
  */
-enum gz_result gz_door_create(struct gz_door **out_door);
+enum gz_result gz_door_create(enum gz_door_kind kind, struct gz_door **out_door);
 
 /** Know a further topic that the daemon sends. Beyond GZ_DOOR_TOPICS_MAX it stays strange. */
 void gz_door_know(struct gz_door *door, const char *topic);
@@ -114,6 +141,13 @@ bool gz_door_pass(struct gz_door *door, int fd, uint64_t identity, const void *b
 /** A connection has ended. Ignored if it did not come through the door. Those that end unnoticed
  * are found when there are too many. */
 void gz_door_leave(struct gz_door *door, int fd, int64_t now_ns);
+
+/** The daemon has taken a frame of @p size bytes, which a sender has sent, from libzmq. Threads:
+ * any. */
+void gz_door_took(struct gz_door *door, size_t size);
+
+/** libzmq has no message of any sender. Threads: any. */
+void gz_door_emptied(struct gz_door *door);
 
 /** How many connections were refused or ended: TOO_MANY, TOO_LARGE. Threads: any. */
 uint64_t gz_door_refused(const struct gz_door *door, enum gz_quota_reason reason);

@@ -19,6 +19,12 @@
 
 #define GZ_LOG_MODULE "gazed"
 
+/* zmq.h hides this option of libzmq 4.3. With it off, a message is copied: else the smallest one
+ * keeps the 8 KiB with which it was received. Older versions have no such option. */
+#ifndef ZMQ_ZERO_COPY_RECV
+#define ZMQ_ZERO_COPY_RECV 10
+#endif
+
 /* Everything that lives as long as the daemon. */
 struct daemon {
 	struct gz_config config;
@@ -77,6 +83,7 @@ static enum gz_result open_daemon_sockets(struct daemon *daemon)
 	daemon->context = zmq_ctx_new();
 	if (!daemon->context)
 		return GZ_ERR_NO_MEM;
+	zmq_ctx_set(daemon->context, ZMQ_ZERO_COPY_RECV, 0);
 	daemon->network = (struct gz_network) {
 		.config = &daemon->config,
 		.directory = daemon->directory,

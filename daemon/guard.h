@@ -2,7 +2,7 @@
  * @file
  * The authentication thread. It answers libzmq's question whether a client may connect (ZeroMQ
  * RFC 27/ZAP), counts connections, ends those beyond the quota (quota.h), and logs refused clients,
- * once a minute per address. It also has the door (door.h) and logs whom that refuses.
+ * once a minute per address. It also has the doors (door.h) and logs whom they refuse.
  *
  * A client with an unknown key is refused by that answer. A client with a wrong server key, or
  * without keys, fails earlier, in the handshake: only the sockets' monitors report it.
@@ -11,6 +11,7 @@
 #define GZ_DAEMON_GUARD_H
 
 #include <stdint.h>
+#include <zmq.h>
 
 #include "base/log.h"
 #include "base/result.h"
@@ -47,6 +48,7 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
  * @param name  of the socket, for messages; static
  * @param[out] out_connections  valid until the guard is destroyed
  * @retval GZ_ERR_FULL  GZ_GUARD_SOCKETS_MAX sockets are watched already
+ * @retval GZ_ERR_NO_MEM  no memory
  * @retval GZ_ERR_IO    the socket cannot be monitored; logged
  */
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
@@ -60,15 +62,23 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
  */
 enum gz_result gz_guard_start(struct gz_guard *guard);
 
-/** Let clients without keys at a local TCP port of a publishing socket come through the guard's
- * door (door.h); ignored for other sockets. Call it when the port has just been bound. The doors of
- * two guards cannot be open at a time. */
+/** Let clients without keys at a local TCP port of a socket come through a door of the guard
+ * (door.h): publishing sockets share one, each other socket has its own. Call it when the port has
+ * just been bound. The doors of two guards cannot be open at a time. */
 void gz_guard_open_door(const struct gz_connections *connections, int port);
 
 /** Tell the door a topic that the daemon sends. Call it before the door is opened. */
 void gz_guard_know_topic(struct gz_guard *guard, const char *topic);
 
-/** How many connections were ended or refused for @p reason since the start. Threads: any. */
+/** A frame of a client's message was received from the socket, and counts no longer as held by
+ * libzmq. Do not call it for frames that libzmq adds. Threads: any. */
+void gz_connections_took(const struct gz_connections *connections, zmq_msg_t *frame);
+
+/** The socket has no message. Threads: any. */
+void gz_connections_emptied(const struct gz_connections *connections);
+
+/** How many connections were ended or refused for @p reason since the start: TOO_LARGE those of
+ * readers, TOO_MANY the others. Threads: any. */
 uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reason);
 
 /** How many connections the socket has now, local ones and those over TCP. Threads: any. */

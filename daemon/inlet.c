@@ -15,7 +15,7 @@
 
 /* Messages that libzmq keeps of one client until they are collected. It reads no more from that
  * client meanwhile, and the client's libzmq drops what it cannot send. */
-enum { SOCKET_QUEUE = 1024 };
+enum { SOCKET_QUEUE = 256 };
 
 /* Most messages collected at once, so that requests are answered in time. Chosen: a millisecond's.
  */
@@ -25,6 +25,7 @@ struct gz_inlet {
 	const struct gz_log *log;
 	void *socket;
 	int port;
+	const struct gz_connections *connections;
 	struct gz_message_queue *queue;
 	struct gz_inlet_counts *counts;
 	struct gz_ratelimit complaints;
@@ -176,7 +177,8 @@ static void note_overflow(struct gz_inlet *inlet)
 			(unsigned long long)held_back);
 }
 
-int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2])
+int gz_inlet_receive_frames(void *socket, const struct gz_connections *connections,
+			    zmq_msg_t frames[2])
 {
 	int count = 0;
 	bool more = true;
@@ -184,6 +186,7 @@ int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2])
 		zmq_msg_t *frame = &frames[count == 0 ? 0 : 1];
 		if (zmq_msg_recv(frame, socket, ZMQ_DONTWAIT) < 0)
 			break;
+		gz_connections_took(connections, frame);
 		count++;
 		more = zmq_msg_more(frame) != 0;
 	}
@@ -210,12 +213,14 @@ void gz_inlet_collect(struct gz_inlet *inlet)
 	zmq_msg_init(&frames[1]);
 	int count = 1;
 	for (int i = 0; i < COLLECTED_AT_ONCE && count > 0; i++) {
-		count = gz_inlet_receive_frames(inlet->socket, frames);
+		count = gz_inlet_receive_frames(inlet->socket, inlet->connections, frames);
 		if (count == 2)
 			queue_message(inlet, frames);
 		else if (count > 0)
 			note_refusal(inlet, GZ_ERR_PROTOCOL);
 	}
+	if (count == 0)
+		gz_connections_emptied(inlet->connections);
 	zmq_msg_close(&frames[0]);
 	zmq_msg_close(&frames[1]);
 }
@@ -261,7 +266,8 @@ static enum gz_result open_inlet_socket(struct gz_inlet *inlet, const struct gz_
 		return GZ_ERR_IO;
 	}
 	gz_network_endpoint(network, network->config->inlet_port, endpoint);
-	return gz_network_bind(network, inlet->socket, "inlet", endpoint, &inlet->port, NULL);
+	return gz_network_bind(network, inlet->socket, "inlet", endpoint, &inlet->port,
+			       &inlet->connections);
 }
 
 enum gz_result gz_inlet_create(const struct gz_network *network, struct gz_inlet_counts *counts,

@@ -104,10 +104,12 @@ const char *gz_inlet_refusal(enum gz_result result);
  * holds the last one.
  *
  * @param socket  a ZeroMQ socket
+ * @param connections  its connections, which are told what was taken
  * @param frames  initialised; the caller closes them
  * @return number of frames, 0 if there is no message
  */
-int gz_inlet_receive_frames(void *socket, zmq_msg_t frames[2]);
+int gz_inlet_receive_frames(void *socket, const struct gz_connections *connections,
+			    zmq_msg_t frames[2]);
 
 /**
  * Take what clients have sent into the queue. If that is full, the message is dropped, counted, and

@@ -19,6 +19,11 @@
 /* Longest request accepted, bytes; libzmq closes the connection of a client that sends more. */
 static const int64_t REQUEST_SIZE_MAX = 65536;
 
+/* Requests and answers that libzmq keeps of one client; it reads no more from a client with that
+ * many requests, and drops further answers to one that does not read. Chosen: more answers than
+ * requests, because libzmq may be late to send them. */
+enum { REQUEST_QUEUE = 64, ANSWER_QUEUE = 256 };
+
 /* Room for an answer with its NUL: a path and a sentence. */
 enum { ANSWER_SIZE = GZ_PATH_SIZE + 256 };
 
@@ -32,6 +37,9 @@ enum { MESSAGES_AT_ONCE = 32 };
 /* Most frames before a request's text: the client's identity, one for each proxy between, and the
  * empty one. Chosen. */
 enum { ENVELOPE_MAX = 8 };
+
+/* Most bytes of each: a client's identity has no more (zmq_setsockopt(3), ZMQ_ROUTING_ID). */
+enum { ENVELOPE_FRAME_MAX = 255 };
 
 /* What the next answer waits for. */
 enum pending {
@@ -50,7 +58,8 @@ struct gz_requests {
 	void *control;
 	void *commands; /* PAIR, to the service */
 	struct gz_inlet *inlet;
-	struct gz_inlet_message message; /* the message being served; large */
+	struct gz_inlet_message message;          /* the message being served; large */
+	const struct gz_connections *connections; /* of control */
 	int port;
 	int stream_port;
 	int latest_port;
@@ -77,23 +86,36 @@ static void drop_envelope(struct gz_requests *requests)
 		zmq_msg_close(&requests->envelope[--requests->envelope_count]);
 }
 
+/* Receive a frame of the envelope. @param is_first  libzmq has added it. @return whether there was
+ * one */
+static bool receive_envelope_frame(struct gz_requests *requests, zmq_msg_t *frame, bool is_first)
+{
+	bool received = zmq_msg_recv(frame, requests->control, ZMQ_DONTWAIT) >= 0;
+	if (received && !is_first)
+		gz_connections_took(requests->connections, frame);
+	else if (!received)
+		gz_connections_emptied(requests->connections);
+	return received;
+}
+
 /* Receive the frames up to the empty one, which the answer repeats. A message that has none, or too
- * many before it, is dropped: nobody waits for its answer.
+ * many or too long ones before it, is dropped: nobody waits for its answer.
  * @return whether a request follows */
 static bool receive_envelope(struct gz_requests *requests)
 {
-	bool more = true, bottom = false;
+	bool more = true, bottom = false, is_short = true;
 	drop_envelope(requests);
-	while (more && !bottom && requests->envelope_count < ENVELOPE_MAX) {
+	while (more && !bottom && is_short && requests->envelope_count < ENVELOPE_MAX) {
 		zmq_msg_t *frame = &requests->envelope[requests->envelope_count];
 		zmq_msg_init(frame);
 		requests->envelope_count++;
-		if (zmq_msg_recv(frame, requests->control, ZMQ_DONTWAIT) < 0) {
+		if (!receive_envelope_frame(requests, frame, requests->envelope_count == 1)) {
 			drop_envelope(requests);
 			return false;
 		}
 		more = zmq_msg_more(frame) != 0;
 		bottom = zmq_msg_size(frame) == 0;
+		is_short = zmq_msg_size(frame) <= ENVELOPE_FRAME_MAX;
 	}
 	if (bottom && more)
 		return true;
@@ -101,8 +123,7 @@ static bool receive_envelope(struct gz_requests *requests)
 	while (more) {
 		zmq_msg_t rest;
 		zmq_msg_init(&rest);
-		more = zmq_msg_recv(&rest, requests->control, ZMQ_DONTWAIT) >= 0 &&
-		       zmq_msg_more(&rest);
+		more = receive_envelope_frame(requests, &rest, false) && zmq_msg_more(&rest);
 		zmq_msg_close(&rest);
 	}
 	return false;
@@ -528,7 +549,7 @@ static void receive_request(struct gz_requests *requests)
 		return;
 	zmq_msg_init(&frames[0]);
 	zmq_msg_init(&frames[1]);
-	int count = gz_inlet_receive_frames(requests->control, frames);
+	int count = gz_inlet_receive_frames(requests->control, requests->connections, frames);
 	requests->owed = count > 0;
 	if (count == 1) {
 		gz_remote_parse(zmq_msg_data(&frames[0]), zmq_msg_size(&frames[0]), &request);
@@ -594,7 +615,12 @@ static enum gz_result open_request_sockets(struct gz_requests *requests)
 	int linger = 0, control_linger = GZ_REQUESTS_PATIENCE_MS;
 	requests->control = zmq_socket(requests->parts.context, ZMQ_ROUTER);
 	requests->commands = zmq_socket(requests->parts.context, ZMQ_PAIR);
+	const int request_queue = REQUEST_QUEUE, answer_queue = ANSWER_QUEUE;
 	if (!requests->control || !requests->commands ||
+	    zmq_setsockopt(requests->control, ZMQ_RCVHWM, &request_queue, sizeof request_queue) !=
+		    0 ||
+	    zmq_setsockopt(requests->control, ZMQ_SNDHWM, &answer_queue, sizeof answer_queue) !=
+		    0 ||
 	    zmq_setsockopt(requests->control, ZMQ_MAXMSGSIZE, &REQUEST_SIZE_MAX,
 			   sizeof REQUEST_SIZE_MAX) != 0 ||
 	    zmq_setsockopt(requests->control, ZMQ_LINGER, &control_linger, sizeof control_linger) !=
@@ -606,7 +632,8 @@ static enum gz_result open_request_sockets(struct gz_requests *requests)
 		return GZ_ERR_IO;
 	}
 	return gz_network_bind(requests->parts.network, requests->control, "control",
-			       requests->parts.config->control_endpoint, &requests->port, NULL);
+			       requests->parts.config->control_endpoint, &requests->port,
+			       &requests->connections);
 }
 
 enum gz_result gz_requests_create(const struct gz_requests_parts *parts,

@@ -8,7 +8,7 @@ enum { GREETING, FLAGS, LENGTH, BODY, UNKNOWN };
 enum { SIGNATURE_END = 9, VERSION_AT = 10, GREETING_2_SIZE = 12, GREETING_3_SIZE = 64 };
 enum { VERSION_1 = 0, VERSION_2 = 1 };
 
-enum { FLAG_LARGE = 2, FLAG_COMMAND = 4 };
+enum { FLAG_MORE = 1, FLAG_LARGE = 2, FLAG_COMMAND = 4 };
 
 /* A command begins with the length of its name. */
 static const char subscribe_command[] = "\x09SUBSCRIBE";
@@ -73,7 +73,11 @@ static size_t take_body(struct gz_zmtp_input *input, const unsigned char *bytes,
 static struct gz_zmtp_frame ended_frame(const struct gz_zmtp_input *input)
 {
 	size_t header = input->flags & FLAG_LARGE ? 9 : 2;
-	struct gz_zmtp_frame frame = { .kind = GZ_ZMTP_MESSAGE, .size = input->length + header };
+	struct gz_zmtp_frame frame = { .kind = GZ_ZMTP_MESSAGE,
+				       .size = input->length + header,
+				       .body_size = input->length,
+				       .more = (input->flags & (FLAG_MORE | FLAG_COMMAND)) ==
+					       FLAG_MORE };
 	size_t before = 1;
 	bool subscribes = input->kept > 0 && input->head[0] == 1;
 	if (input->flags & FLAG_COMMAND) {

@@ -27,6 +27,8 @@ enum gz_zmtp_kind {
 struct gz_zmtp_frame {
 	enum gz_zmtp_kind kind;
 	uint64_t size;              /**< bytes, with the frame's header */
+	uint64_t body_size;         /**< bytes; 0 for UNKNOWN */
+	bool more;                  /**< further frames of the same message follow */
 	uint64_t topic_size;        /**< SUBSCRIBE; bytes */
 	const unsigned char *topic; /**< its first bytes, GZ_ZMTP_TOPIC_SIZE at most; valid until
 				       the next call */

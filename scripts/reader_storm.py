@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Attack the stream's TCP port as any local user can, and say what that does to other readers
-(docs/security.md):
+"""Attack the TCP ports as any local user can, and say what that does to other readers and to the
+daemon's memory (docs/security.md):
 
-    gazed --driver sim              # prints the port of the stream
-    scripts/reader_storm.py PORT [KIND...]
+    gazed --driver sim              # prints the port of the control socket
+    scripts/reader_storm.py PORT PID [KIND...]
 
 Only for a daemon of your own. Speaks ZMTP 3.0 without libzmq, which would be too slow.
 """
@@ -18,6 +18,7 @@ import time
 
 GREETING = b"\xff" + bytes(8) + b"\x7f\x03\x00" + b"NULL".ljust(20, b"\0") + bytes(32)
 READY = b"\x04\x19\x05READY\x0bSocket-Type\0\0\0\3SUB"
+MIB = 1 << 20
 ANSWER_SIZE = len(GREETING) + 28  # READY of an XPUB
 SECONDS = 5
 TOGETHER = 32  # connections that a process opens at a time
@@ -74,6 +75,51 @@ def open_readers(port, count, sent):
 def close_all(connections):
     for connection in connections:
         connection.close()
+
+
+def open_sender(port, kind):
+    """A connection of a socket of @kind with a finished handshake."""
+    ready = b"\5READY\x0bSocket-Type" + struct.pack(">I", len(kind)) + kind
+    connection = connect(port)
+    try:
+        connection.sendall(GREETING + bytes([4, len(ready)]) + ready)
+        receive(connection, len(GREETING))
+        take_frame(connection)
+    except OSError:
+        connection.close()
+        raise
+    return connection
+
+
+def ask(port, request):
+    connection = open_sender(port, b"REQ")
+    connection.sendall(b"\1\0" + frame(request))
+    take_frame(connection)
+    answer = take_frame(connection)
+    connection.close()
+    return int(answer)
+
+
+def flood(port, end, kind, message):
+    """Many connections that send all the time and do not read."""
+    block, sent_of = message * 64, {}
+    while time.monotonic() < end:
+        for _ in range(TOGETHER if len(sent_of) < 500 else 0):
+            try:
+                connection = open_sender(port, kind)
+                connection.setblocking(False)
+                sent_of[connection] = 0
+            except OSError:
+                pass
+        for connection, sent in list(sent_of.items()):
+            try:
+                sent_of[connection] = (sent + connection.send(block[sent:])) % len(block)
+            except BlockingIOError:
+                pass
+            except OSError:
+                connection.close()
+                del sent_of[connection]
+    close_all(sent_of)
 
 
 def come_and_go(port, end, base, sent):
@@ -140,6 +186,15 @@ KINDS = {
     "deaf": lambda port, end, base: stay(port, end, lambda i: frame(b"\1")),
     "mixture": lambda port, end, base: come_and_go(port, end, base, mixture),
 }
+LARGE = b"\x81\xa1x\xc5" + struct.pack(">H", 3000) + bytes(3000)  # {"x": bytes}
+AT_OTHER_PORTS = {
+    "inlet": (b"PUB_PORT", lambda port, end, base: flood(
+        port, end, b"PUB", b"\1\5flood" + frame(LARGE))),
+    "endless": (b"PUB_PORT", lambda port, end, base: flood(
+        port, end, b"PUB", (b"\3" + frame(LARGE)[1:]))),
+    "requests": (None, lambda port, end, base: flood(
+        port, end, b"DEALER", b"\1\0" + frame(b"t"))),
+}
 IN_ONE_PROCESS = ("none", "burst", "one")
 
 
@@ -188,7 +243,23 @@ def arrive(port, stop, longest):
         time.sleep(0.2)
 
 
-def run(port, kind):
+def memory(pid):
+    with open(f"/proc/{pid}/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / MIB
+
+
+def attack_of(kind, control, stream):
+    """The port and the function."""
+    if kind in KINDS:
+        return stream, KINDS[kind]
+    request, function = AT_OTHER_PORTS[kind]
+    return ask(control, request) if request else control, function
+
+
+def run(control, pid, kind):
+    port = ask(control, b"SUB_PORT")
+    attacked, function = attack_of(kind, control, port)
+    before = peak = memory(pid)
     ready, stop = multiprocessing.Event(), multiprocessing.Event()
     gap, longest = multiprocessing.Value("d", 0), multiprocessing.Value("d", 0)
     others = [multiprocessing.Process(target=watch, args=(port, ready, stop, gap)),
@@ -197,27 +268,30 @@ def run(port, kind):
     ready.wait(10)
     others[1].start()
     end = time.monotonic() + SECONDS
-    attackers = [multiprocessing.Process(target=KINDS[kind], args=(port, end, 40000000 * k))
+    attackers = [multiprocessing.Process(target=function, args=(attacked, end, 40000000 * k))
                  for k in range(1 if kind in IN_ONE_PROCESS else 2)]
     for attacker in attackers:
         attacker.start()
-    for attacker in attackers:
-        attacker.join()
-    time.sleep(2)
+    while any(attacker.is_alive() for attacker in attackers):
+        peak = max(peak, memory(pid))
+        time.sleep(0.02)
+    time.sleep(7)  # until the daemon takes what follows for another flood (daemon/door.h)
     stop.set()
     for other in others:
         other.join()
-    print(f"{kind:8} longest gap {gap.value:.2f} s, a new reader waits {longest.value:.2f} s")
+    print(f"{kind:8} longest gap {gap.value:.2f} s, a new reader waits {longest.value:.2f} s, memory "
+          f"+{peak - before:.0f} MiB, then +{memory(pid) - before:.0f} MiB", flush=True)
 
 
 def main():
     limit = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(limit, 8192), limit))
-    if len(sys.argv) < 2 or not sys.argv[1].isdigit() or not set(sys.argv[2:]) <= set(KINDS):
-        sys.exit(f"{__doc__}\nkinds: {' '.join(KINDS)}")
-    for kind in sys.argv[2:] or KINDS:
-        run(int(sys.argv[1]), kind)
-        time.sleep(5)  # until the daemon takes what follows for another flood (daemon/door.h)
+    kinds = [*KINDS, *AT_OTHER_PORTS]
+    if (len(sys.argv) < 3 or not (sys.argv[1] + sys.argv[2]).isdigit() or
+            not set(sys.argv[3:]) <= set(kinds)):
+        sys.exit(f"{__doc__}\nkinds: {' '.join(kinds)}")
+    for kind in sys.argv[3:] or kinds:
+        run(int(sys.argv[1]), sys.argv[2], kind)
 
 
 if __name__ == "__main__":

@@ -77,7 +77,13 @@ static bool come_with(int fd, const char *topic, int64_t now_ns)
 static int set_up(void **state)
 {
 	(void)state;
-	return gz_door_create(&door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_READERS, &door) == GZ_OK ? 0 : -1;
+}
+
+static int set_up_for_senders(void **state)
+{
+	(void)state;
+	return gz_door_create(GZ_DOOR_SENDERS, &door) == GZ_OK ? 0 : -1;
 }
 
 static int tear_down(void **state)
@@ -334,6 +340,85 @@ static void door_full_house_ends_the_least_useful(void **state)
 	}
 }
 
+/* A frame with a length of eight bytes and a body of @p size. */
+static void add_large_frame(struct sent *sent, unsigned char flags, size_t size)
+{
+	static const char body[4096];
+	unsigned char header[9] = { [7] = (unsigned char)(size >> 8), [8] = (unsigned char)size };
+	header[0] = flags | 2;
+	add_bytes(sent, header, sizeof header);
+	add_bytes(sent, body, size);
+}
+
+/* A sender that has sent one small message. */
+static int let_sender_in(void)
+{
+	int fd = open_connection();
+	assert_true(come_with(fd, "topic", 0));
+	return fd;
+}
+
+/* What libzmq holds of all is limited; a sender with few messages is not hindered by the others. */
+static void door_senders_share_what_libzmq_holds(void **state)
+{
+	(void)state;
+	enum { BODY = 4096, COST = BODY + GZ_DOOR_FRAME_COST, ENOUGH = GZ_DOOR_HELD / COST };
+	int flooding = let_sender_in(), quiet = let_sender_in(), passed = 0;
+	struct sent message = { 0 }, few = { 0 };
+	add_large_frame(&message, 0, BODY);
+	add_subscription(&few, "annotation");
+	while (passed <= ENOUGH && gz_door_refused(door, GZ_QUOTA_TOO_LARGE) == 0)
+		passed += pass(flooding, &message, 0);
+	assert_in_range(passed, ENOUGH - 1, ENOUGH);
+	for (int i = 0; i < 100; i++)
+		assert_true(pass(quiet, &few, 0));
+	/* What the daemon takes makes room; what it never saw is gone when nothing is left. */
+	for (int i = 0; i < 10; i++)
+		gz_door_took(door, BODY);
+	close(flooding);
+	flooding = let_sender_in();
+	for (passed = 0; passed < 100 && pass(flooding, &message, 0);)
+		passed++;
+	assert_in_range(passed, 5, 10 + GZ_DOOR_SENDER_BYTES / COST);
+	gz_door_took(door, SIZE_MAX / 2);
+	close(flooding);
+	flooding = let_sender_in();
+	for (int i = 0; i < 100; i++)
+		assert_true(pass(flooding, &message, 0));
+	gz_door_emptied(door);
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 2);
+	close(flooding);
+	close(quiet);
+}
+
+static void door_message_without_end_is_refused(void **state)
+{
+	(void)state;
+	enum { BODY = 4000, ENOUGH = GZ_DOOR_MESSAGE_MAX / (BODY + GZ_DOOR_FRAME_COST) };
+	int fd = let_sender_in(), passed = 0;
+	struct sent last = { 0 }, more = { 0 };
+	add_large_frame(&last, 0, BODY);
+	add_large_frame(&more, 1, BODY);
+	for (int i = 0; i < 2 * ENOUGH; i++)
+		assert_true(pass(fd, i % 2 ? &last : &more, 0));
+	while (passed < 2 * ENOUGH && pass(fd, &more, 0))
+		passed++;
+	assert_int_equal(passed, ENOUGH);
+	close(fd);
+}
+
+static void door_sender_of_an_old_version_is_soon_refused(void **state)
+{
+	(void)state;
+	int fd = open_connection();
+	struct sent sent = { .size = GZ_DOOR_STRANGE_EACH, .bytes = { 1 } };
+	assert_true(enter(fd, 0));
+	assert_true(pass(fd, &sent, 0));
+	sent.size = 1;
+	assert_false(pass(fd, &sent, 0));
+	close(fd);
+}
+
 /* A descriptor may be another file by the time its bytes come. */
 static void door_asks_nothing_of_other_connections(void **state)
 {
@@ -353,6 +438,8 @@ static void door_asks_nothing_of_other_connections(void **state)
 }
 
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
+#define SENDERS_TEST(function) \
+	cmocka_unit_test_setup_teardown(function, set_up_for_senders, tear_down)
 
 TEST_SUITE(door)
 {
@@ -367,6 +454,9 @@ TEST_SUITE(door)
 		TEST(door_few_connections_come_in_a_second),
 		TEST(door_full_house_ends_the_least_useful),
 		TEST(door_asks_nothing_of_other_connections),
+		SENDERS_TEST(door_senders_share_what_libzmq_holds),
+		SENDERS_TEST(door_message_without_end_is_refused),
+		SENDERS_TEST(door_sender_of_an_old_version_is_soon_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -622,6 +622,22 @@ class RudeTest(ClientTest):
         publisher.send_multipart([b"gazeX", msgpack.dumps({})])
         wait_for(lambda: self.refused("messages") == 1, "the reserved topic is not counted")
 
+    def test_more_clients_than_a_port_serves(self):
+        self.status = self.client.subscribe("status")
+        ports = self.gazed.port, int(self.client.ask("PUB_PORT"))
+        idle = [socket.create_connection(("127.0.0.1", port)) for port in ports for _ in range(320)]
+        wait_for(lambda: self.refused("connections") > 100, "all are served")
+        self.assert_answers()
+        for connection in idle:
+            connection.close()
+
+    def test_message_without_an_end(self):
+        self.status = self.client.subscribe("status")
+        publisher = self.connect_inlet(self.watch())
+        publisher.send_multipart([b"x" * 1000] * 100)
+        wait_for(lambda: self.refused("connections") > 0, "its sender is served")
+        self.assert_answers()
+
     def test_more_connections_than_files(self):
         self.gazed.close()
         self.gazed = Gazed(GAZED, *self.arguments, files=128)
