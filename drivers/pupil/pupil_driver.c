@@ -17,7 +17,7 @@
 
 /* Longest waits, ms: create() for the first answer, start() for the clocks, list() and create() for
  * other answers, create() for a status. Chosen: enough for a network with round trips of some ms.
- * What does not come in time is not used. */
+ * If an answer does not come in time, create() fails and is called again. */
 enum { CREATE_MS = 150, START_MS = 150, LIST_MS = 100, ASK_MS = 150, STATUS_MS = 500 };
 
 /* Silence after which a warning is logged although requests are answered, ns. Chosen: longer than a
@@ -295,29 +295,38 @@ static const struct gz_device_ops pupil_ops = {
 	.destroy = pupil_destroy,
 };
 
-/* Whether the peer is a gazed: it knows a request that Pupil Remote does not. */
-static bool is_other_gazed(struct gz_pupil_link *link, int timeout_ms)
+/* Whether the peer is a gazed: it knows a request that Pupil Remote does not.
+ * @retval GZ_ERR_TIMEOUT  no answer */
+static enum gz_result ask_whether_gazed(struct gz_pupil_link *link, int timeout_ms,
+					bool *out_is_gazed)
 {
 	char latest[32];
-	return gz_pupil_link_ask(link, "LATEST_PORT", timeout_ms, latest, sizeof latest) == GZ_OK &&
-	       latest[0] >= '0' && latest[0] <= '9';
+	enum gz_result result =
+		gz_pupil_link_ask(link, "LATEST_PORT", timeout_ms, latest, sizeof latest);
+	*out_is_gazed = latest[0] >= '0' && latest[0] <= '9';
+	return result;
 }
 
 /* Find out who the peer is and, if it is another gazed, what it knows about its tracker and
- * display. */
-static void identify_peer(struct pupil_device *device)
+ * display.
+ * @retval GZ_ERR_TIMEOUT  it is too busy to answer: what it would say of its display is needed */
+static enum gz_result identify_peer(struct pupil_device *device)
 {
 	struct gz_device_info *info = &device->info;
 	struct gz_status status;
 	char version[32];
+	bool is_gazed;
 	snprintf(info->name, sizeof info->name, "pupil");
-	if (!is_other_gazed(&device->link, ASK_MS)) {
+	enum gz_result result = ask_whether_gazed(&device->link, ASK_MS, &is_gazed);
+	if (result == GZ_OK && !is_gazed) {
 		if (gz_pupil_link_ask(&device->link, "v", ASK_MS, version, sizeof version) == GZ_OK)
 			snprintf(info->name, sizeof info->name, "Pupil Capture %s", version);
-		return;
+		return GZ_OK;
 	}
-	if (gz_pupil_link_status(&device->link, STATUS_MS, &status) != GZ_OK)
-		return;
+	if (result == GZ_OK)
+		result = gz_pupil_link_status(&device->link, STATUS_MS, &status);
+	if (result != GZ_OK)
+		return result == GZ_ERR_TIMEOUT ? result : GZ_OK;
 	if (status.tracker.name[0])
 		memcpy(info->name, status.tracker.name, sizeof info->name);
 	memcpy(info->serial, status.tracker.serial, sizeof info->serial);
@@ -325,6 +334,7 @@ static void identify_peer(struct pupil_device *device)
 	info->has_display = gz_display_valid(&status.display);
 	if (info->has_display)
 		info->display = status.display;
+	return GZ_OK;
 }
 
 static enum gz_result pupil_create(const void *settings, const struct gz_driver_host *host,
@@ -346,11 +356,14 @@ static enum gz_result pupil_create(const void *settings, const struct gz_driver_
 			 GZ_TOPIC_SURFACES "%s", wanted->surface);
 	enum gz_result result =
 		gz_pupil_link_open(&device->link, wanted->address, CREATE_MS, host->log);
+	if (result == GZ_OK && identify_peer(device) != GZ_OK) {
+		gz_err(host->log, "%s does not answer in time who it is", wanted->address);
+		result = GZ_ERR_NO_DEVICE;
+	}
 	if (result != GZ_OK) {
 		pupil_destroy(&device->base);
 		return result;
 	}
-	identify_peer(device);
 	*out_device = &device->base;
 	return GZ_OK;
 }
@@ -367,7 +380,8 @@ static size_t pupil_list(const void *settings, const struct gz_driver_host *host
 	if (!gz_pupil_address_valid(wanted->address) ||
 	    gz_pupil_link_open(&link, wanted->address, LIST_MS, NULL) != GZ_OK)
 		return 0;
-	bool is_pupil = !is_other_gazed(&link, LIST_MS) &&
+	bool is_gazed;
+	bool is_pupil = ask_whether_gazed(&link, LIST_MS, &is_gazed) == GZ_OK && !is_gazed &&
 			gz_pupil_link_ask(&link, "v", LIST_MS, version, sizeof version) == GZ_OK;
 	gz_pupil_link_close(&link);
 	if (!is_pupil)

@@ -375,7 +375,7 @@ enum gz_result gz_pupil_link_status(struct gz_pupil_link *link, int timeout_ms,
 	if (link->stream)
 		zmq_close(link->stream);
 	link->stream = NULL;
-	return result == GZ_ERR_PROTOCOL ? GZ_ERR_TIMEOUT : result;
+	return result;
 }
 
 enum gz_result gz_pupil_link_open(struct gz_pupil_link *link, const char *address, int timeout_ms,

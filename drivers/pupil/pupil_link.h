@@ -125,6 +125,7 @@ void gz_pupil_link_doubt_clock(struct gz_pupil_link *link, int64_t now_ns);
  *
  * @param[out] out_status  written on success only
  * @retval GZ_ERR_TIMEOUT  none within @p timeout_ms
+ * @retval GZ_ERR_PROTOCOL  only such that cannot be decoded
  * @retval GZ_ERR_IO       no socket; logged
  */
 enum gz_result gz_pupil_link_status(struct gz_pupil_link *link, int timeout_ms,

@@ -198,6 +198,8 @@ static void answer(struct pupil_capture *capture)
 		snprintf(reply, sizeof reply, "%s", capture->port_answer);
 	else if (strcmp(request, "SUB_PORT") == 0)
 		snprintf(reply, sizeof reply, "%d", capture->stream_port);
+	else if (strcmp(request, "LATEST_PORT") == 0 && capture->latest_answer)
+		snprintf(reply, sizeof reply, "%s", capture->latest_answer);
 	else if (strcmp(request, "t") == 0)
 		snprintf(reply, sizeof reply, "%.9f",
 			 (double)pupil_capture_time_ns(capture, gz_clock_now_ns()) * 1e-9);

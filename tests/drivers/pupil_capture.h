@@ -16,17 +16,18 @@
 
 /** Settings; those that are atomic may change while it runs. */
 struct pupil_capture {
-	char address[64];         /**< of its Pupil Remote, once started */
-	int64_t period_ns;        /**< time between two samples */
-	double skew;              /**< skew of its clock, no unit */
-	_Atomic int64_t ahead_ns; /**< its clock - host clock at the start */
-	atomic_bool deaf;         /**< do not answer requests */
-	atomic_bool mute;         /**< send nothing on the stream */
-	atomic_bool garbage;      /**< send one bad message of each kind with every good one */
-	atomic_bool monocular;    /**< send the right eye only */
-	atomic_int skip;          /**< samples to skip, once */
-	atomic_bool twice;        /**< send every message twice */
-	const char *port_answer;  /**< answer to SUB_PORT; NULL: the true port */
+	char address[64];          /**< of its Pupil Remote, once started */
+	int64_t period_ns;         /**< time between two samples */
+	double skew;               /**< skew of its clock, no unit */
+	_Atomic int64_t ahead_ns;  /**< its clock - host clock at the start */
+	atomic_bool deaf;          /**< do not answer requests */
+	atomic_bool mute;          /**< send nothing on the stream */
+	atomic_bool garbage;       /**< send one bad message of each kind with every good one */
+	atomic_bool monocular;     /**< send the right eye only */
+	atomic_int skip;           /**< samples to skip, once */
+	atomic_bool twice;         /**< send every message twice */
+	const char *port_answer;   /**< answer to SUB_PORT; NULL: the true port */
+	const char *latest_answer; /**< answer to LATEST_PORT, as of a gazed; NULL: none of that */
 	/* Internal. */
 	void *context, *control, *stream;
 	int control_port, stream_port;

@@ -318,6 +318,18 @@ static void pupil_with_bad_answers_is_refused(void **state)
 	assert_true(gz_clock_now_ns() - begin_ns < 2 * GZ_NS_PER_S);
 }
 
+/* It is asked again later: without an answer its display would be taken for the preset one. */
+static void gazed_that_is_too_busy_to_tell_its_display_is_refused(void **state)
+{
+	(void)state;
+	begin(NULL);
+	capture.latest_answer = "50022";
+	pupil_capture_start(&capture);
+	stage_set(&stage, "pupil.address", capture.address);
+	assert_int_equal(open_device(), GZ_ERR_NO_DEVICE);
+	assert_null(device);
+}
+
 static void malformed_addresses_are_refused(void **state)
 {
 	(void)state;
@@ -379,6 +391,8 @@ TEST_SUITE(pupil)
 		cmocka_unit_test_setup_teardown(
 			pupil_that_restarts_at_once_is_followed_to_its_new_port, begin, end),
 		cmocka_unit_test_setup_teardown(pupil_with_bad_answers_is_refused, begin, end),
+		cmocka_unit_test_setup_teardown(
+			gazed_that_is_too_busy_to_tell_its_display_is_refused, begin, end),
 		cmocka_unit_test_setup_teardown(malformed_addresses_are_refused, begin, end),
 		cmocka_unit_test_setup_teardown(running_pupil_is_listed, begin, end),
 	};
