@@ -48,14 +48,17 @@ class Gazed:
                  "--recording.directory", self.place, *arguments],
                 env=environment, stderr=log, preexec_fn=lambda: prepare_child(files))
         try:
-            wait_for(lambda: awaited in self.log() or self.process.poll() is not None,
-                     "gazed does not begin")
+            # Two threads write these lines, in either order.
+            wait_for(lambda: (awaited in self.log() and self.told_port()) or
+                     self.process.poll() is not None, "gazed does not begin")
             assert self.process.poll() is None, self.log()
-            told = re.search(r"control at tcp://127\.0\.0\.1:([1-9]\d*),", self.log())
-            self.port = int(told[1]) if told else None
+            self.port = int(self.told_port()[1])
         except BaseException:
             self.close()
             raise
+
+    def told_port(self):
+        return re.search(r"control at tcp://127\.0\.0\.1:([1-9]\d*),", self.log())
 
     def log(self):
         with open(self.log_path) as file:
