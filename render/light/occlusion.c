@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/light/light_cells.h"
+
 /* A voxel that is filled completely. The largest cell, 32^3 voxels, sums up to less than 2^32. */
 enum { FULL = 65535 };
 
@@ -173,13 +175,7 @@ static enum gz_result reserve(struct gz_occlusion *occlusion)
 {
 	const size_t count = (size_t)occlusion->dims[0] * (size_t)occlusion->dims[1] *
 			     (size_t)occlusion->dims[2];
-	const size_t padding = GZ_VOLUME_PADDING / sizeof *occlusion->cells;
-	if (count > occlusion->capacity) {
-		free(occlusion->cells);
-		occlusion->cells = calloc(count + padding, sizeof *occlusion->cells);
-		occlusion->capacity = occlusion->cells ? count : 0;
-	}
-	return occlusion->cells ? GZ_OK : GZ_ERR_NO_MEM;
+	return gz_light_cells_reserve(count, &occlusion->cells, &occlusion->capacity);
 }
 
 static void run_parts(struct gz_workers *workers, gz_workers_part *part, struct job *job,

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/light/light_cells.h"
+
 /* Voxels along the edge of a macrocell. */
 enum { MACROCELL = GZ_MACROCELL_EDGE };
 
@@ -112,17 +114,6 @@ static bool same_key(const struct gz_light_grid_key *a, const struct gz_light_gr
 	       gz_clip_box_same(&a->clip, &b->clip);
 }
 
-static enum gz_result reserve_light_cells(struct gz_light_grid *grid, size_t count)
-{
-	const size_t padding = GZ_VOLUME_PADDING / sizeof *grid->cells;
-	if (count > grid->capacity) {
-		free(grid->cells);
-		grid->cells = calloc(count + padding, sizeof *grid->cells);
-		grid->capacity = grid->cells ? count : 0;
-	}
-	return grid->cells ? GZ_OK : GZ_ERR_NO_MEM;
-}
-
 enum gz_result gz_light_grid_make(const struct gz_light_grid_request *request,
 				  struct gz_light_grid *grid)
 {
@@ -131,7 +122,8 @@ enum gz_result gz_light_grid_make(const struct gz_light_grid_request *request,
 	if (grid->current && same_key(&grid->key, &key))
 		return GZ_OK;
 	grid->current = false;
-	if (reserve_light_cells(grid, gz_light_grid_lay_out(request->shadows, grid)) != GZ_OK) {
+	const size_t count = gz_light_grid_lay_out(request->shadows, grid);
+	if (gz_light_cells_reserve(count, &grid->cells, &grid->capacity) != GZ_OK) {
 		gz_light_grid_free(grid);
 		return GZ_ERR_NO_MEM;
 	}

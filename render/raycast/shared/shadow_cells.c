@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "render/light/light_cells.h"
+
 /* Number of stored values of 16-bit voxels. */
 enum { STORED_VALUES = 65536 };
 
@@ -147,24 +149,14 @@ static size_t lay_out_levels(const struct gz_volume *volume, struct gz_shadow_ce
 	return total;
 }
 
-static enum gz_result reserve_shadow_cells(struct gz_shadow_cells *cells, size_t count)
-{
-	const size_t padding = GZ_VOLUME_PADDING / sizeof *cells->cells;
-	if (count > cells->capacity) {
-		free(cells->cells);
-		cells->cells = calloc(count + padding, sizeof *cells->cells);
-		cells->capacity = cells->cells ? count : 0;
-	}
-	return cells->cells ? GZ_OK : GZ_ERR_NO_MEM;
-}
-
 enum gz_result gz_shadow_cells_make(const struct gz_volume *volume,
 				    const struct gz_transfer_table *table,
 				    const struct gz_clip_box *clip, struct gz_workers *workers,
 				    struct gz_shadow_cells *cells)
 {
 	struct shadow_job *job = calloc(1, sizeof *job);
-	if (!job || reserve_shadow_cells(cells, lay_out_levels(volume, cells)) != GZ_OK) {
+	if (!job || gz_light_cells_reserve(lay_out_levels(volume, cells), &cells->cells,
+					   &cells->capacity) != GZ_OK) {
 		free(job);
 		gz_shadow_cells_free(cells);
 		return GZ_ERR_NO_MEM;
