@@ -222,8 +222,9 @@ static void find_device_memory(struct gz_gl_device *device)
 /* Load OpenGL into the current context and find its limits. */
 static enum gz_result find_limits(struct gz_gl_device *device, char *reason)
 {
+	/* Once all of them are loaded, they stay: another thread may be using them. */
 	glewExperimental = GL_TRUE; /* core profiles hide the old extension list */
-	const GLenum failure = glewInit();
+	const GLenum failure = GLEW_VERSION_4_3 ? GLEW_OK : glewInit();
 	/* Without an X display GLEW misses GLX after it has loaded all of OpenGL. */
 	if (failure != GLEW_OK && failure != GLEW_ERROR_NO_GLX_DISPLAY) {
 		snprintf(reason, REASON_SIZE, "%s", (const char *)glewGetErrorString(failure));

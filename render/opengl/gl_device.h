@@ -99,7 +99,8 @@ struct gz_gl_setup {
  *
  * Failures are logged: as errors, or where only hardware would do as debug messages, since such a
  * caller tries and falls back. GLEW's pointers belong to the process: contexts of different drivers
- * in one process need libglvnd, which both supported distributions have.
+ * in one process need libglvnd, which both supported distributions have. Once those of 4.3 are
+ * loaded they stay, so that any thread may call this while another one draws.
  */
 enum gz_result gz_gl_device_create(const struct gz_gl_setup *setup, const struct gz_log *log,
 				   struct gz_gl_device *out_device);

@@ -263,6 +263,7 @@ const struct gz_technique gz_raycast_technique = {
 	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_PARTICLES,
 	.objects_max = 1,
 	.backends = raycast_backends,
+	.backends_agree = true,
 	.sharing = GZ_SHARES_AS_CLEAR,
 	.check = gz_raycaster_check,
 	.create = raycast_create,

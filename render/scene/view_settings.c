@@ -43,8 +43,7 @@ const struct gz_option gz_view_setting_options[] = {
 		  "that the daemon describes, else the window's" },
 	{ "view.compare", GZ_OPTION_CHOICE, AT(compare), .choices = gz_view_compare_names,
 	  .preset = "none",
-	  .help = "window: the picture by method standard beside the present one, or their "
-		  "difference" },
+	  .help = "the picture by method standard beside the present one, or their difference" },
 	{ "view.split", GZ_OPTION_DOUBLE, AT(split), 0, 1, .preset = "0.5",
 	  .help = "split: where the standard picture begins, as a fraction of the width" },
 	{ "view.difference_gain", GZ_OPTION_DOUBLE, AT(difference_gain), 1, GZ_DIFFERENCE_GAIN_MAX,

@@ -18,6 +18,7 @@ from picture import PATIENCE_S, read_png, run, write_scene
 GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
 SCENE = write_scene(PLACE.name, SCENES)
+SURFACE = ("--technique", "isosurface", "--isovalue", "0.5")
 METHODS = ("standard", "mdc", "ddc", "acuity")
 KEYS = (
     "method backend width height rays samples plan_ms cast_ms reconstruct_ms total_ms gaze "
@@ -107,6 +108,41 @@ class Headless(unittest.TestCase):
         beside = (400, 60, 520, 300)
         self.assertTrue(sharp.part(*fovea) == foveated.part(*fovea), "not sharp at the gaze")
         self.assertFalse(sharp.part(*beside) == foveated.part(*beside), "sharp beside it")
+
+    def test_comparison_shows_the_standard_picture_or_the_difference_from_it(self):
+        self.compare("--technique", "raycast", "--backend", "cpu")
+
+    def test_surfaces_are_compared_too(self):
+        if "Embree" in self.render(*SURFACE, "--backend", "cpu").stderr:
+            self.skipTest("built without Embree")
+        self.compare(*SURFACE, "--backend", "cpu")
+
+    def compare(self, *how):
+        coarse = (*how, "--gaze", "0.3,0.5", "--foveation.acuity_slope", "0.1")
+        for name, more in (("sharp", ("--method", "standard")), ("foveated", ()),
+                           ("split", ("--view.compare", "split", "--view.split", "0.25")),
+                           ("difference", ("--view.compare", "difference",
+                                           "--view.difference_gain", "3"))):
+            self.good(*coarse, *more, "--out", self.path(name + ".png"), size="192x128")
+        sharp, foveated, split, difference = (
+            read_png(self.path(name + ".png"))
+            for name in ("sharp", "foveated", "split", "difference"))
+        self.assertTrue(split.part(0, 0, 48, 128) == foveated.part(0, 0, 48, 128), "left")
+        self.assertTrue(split.part(48, 0, 192, 128) == sharp.part(48, 0, 192, 128), "right")
+        wanted = bytes(min(255, 3 * abs(a - b)) for a, b in
+                       zip(sharp.part(0, 0, 192, 128), foveated.part(0, 0, 192, 128)))
+        self.assertTrue(any(wanted), "nothing differs")
+        self.assertTrue(difference.part(0, 0, 192, 128) == wanted, "difference")
+
+    def test_comparison_of_several_frames_follows_the_camera(self):
+        turning = ("--backend", "cpu", "--frames", 2, "--turn", 40, "--view.compare", "split",
+                   "--view.split", "0")
+        self.good(*turning, "--out", self.path("split-%d.png"))
+        self.good(*turning[:-4], "--method", "standard", "--out", self.path("sharp-%d.png"))
+        for frame in range(2):
+            split, sharp = (read_png(self.path("%s-%d.png" % (name, frame)))
+                            for name in ("split", "sharp"))
+            self.assertTrue(split == sharp, "frame %d" % frame)
 
     def test_same_command_gives_the_same_picture(self):
         for name, threads in (("a.png", 1), ("b.png", 2)):

@@ -127,6 +127,23 @@ class PictureWindow(WindowCase):
         self.tool("key", "ctrl+Down")
         self.until(lambda p: sum(self.part(p, 4, WIDTH)) == darker, "as before")
 
+    def test_every_technique_is_compared_by_what_draws_it(self):
+        surface = ("--technique", "isosurface", "--isovalue", "0.5", "--isosurface.shadows")
+        for how in (("--technique", "slices", "--slices.count", "24", "--backend", "gl"),
+                    (*surface, "--backend", "gl"), (*surface, "--backend", "cpu")):
+            self.start("--gaze", "0.5,0.5", "--foveation.acuity_slope", "0.1", *how,
+                       "--view.compare", "difference")
+            fovea = (MIDDLE - 12, MIDDLE + 12, HEIGHT // 2 - 12, HEIGHT // 2 + 12)
+
+            def is_difference(picture):
+                fine = self.part(picture, *fovea)
+                return fine == bytes(len(fine)) and any(self.part(picture, 100, WIDTH - 100))
+
+            self.until(is_difference, "difference " + " ".join(how))
+            self.tool("key", "v", "v")
+            self.until(lambda p: any(self.part(p, *fovea)), "split")
+            self.stop()
+
     def test_still_split_takes_no_processor_time(self):
         self.start(*STILL, "--method", "acuity", "--view.compare", "split")
         self.until(lambda p: True, "split")

@@ -18,6 +18,8 @@
  * and hides little. */
 enum { CROSS_ARM_PX = 12, CROSS_HALF_PX = 1 };
 
+static const char cpu_name[] = "cpu";
+
 /* The time points of a series. The thread that loads them reads the first members. */
 struct time_points {
 	char path[GZ_PATH_SIZE]; /* of the scene */
@@ -208,7 +210,7 @@ enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
 					const struct gz_view_options *options)
 {
 	const struct gz_picture_maker_params params = {
-		.backend = "cpu",
+		.backend = cpu_name,
 		.backend_params = backend_params(options, NULL),
 	};
 	return start_pictures(maker, &params);
@@ -219,12 +221,12 @@ bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_cont
 {
 	const struct gz_backend_params params = backend_params(options, gl_context);
 	struct gz_drawer *drawer = NULL;
-	if (strcmp(options->backend, "cpu") == 0)
+	if (strcmp(options->backend, cpu_name) == 0)
 		return true;
 	if (strcmp(options->backend, "auto") != 0 ||
 	    gz_techniques[0]->create("auto", &params, log, &drawer) != GZ_OK)
 		return false;
-	const bool cpu = strcmp(drawer->ops->backend(drawer), "cpu") == 0;
+	const bool cpu = strcmp(drawer->ops->backend(drawer), cpu_name) == 0;
 	gz_drawer_destroy(&drawer);
 	return cpu;
 }
@@ -235,7 +237,7 @@ bool gz_frame_cpu_suffices(const struct gz_frame_maker *maker)
 	const size_t count =
 		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
 	for (size_t i = 0; i < count; i++)
-		if (!gz_technique_has_backend(objects[i].technique, "cpu"))
+		if (!gz_technique_has_backend(objects[i].technique, cpu_name))
 			return false;
 	return true;
 }
@@ -448,6 +450,17 @@ const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *make
 const char *gz_frame_backend(const struct gz_frame_maker *maker)
 {
 	return gz_picture_maker_backend(maker->pictures);
+}
+
+const char *gz_frame_standard_backend(const struct gz_frame_maker *maker)
+{
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	const size_t count =
+		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
+	for (size_t i = 0; i < count; i++)
+		if (objects[i].technique->backends_agree)
+			return cpu_name;
+	return gz_frame_backend(maker);
 }
 
 void gz_frame_forget(struct gz_frame_maker *maker)

@@ -169,6 +169,14 @@ const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *make
 /** The name of the backend, "cpu" or "gl"; static text. Call it after gz_frame_maker_start(). */
 const char *gz_frame_backend(const struct gz_frame_maker *maker);
 
+/**
+ * The backend for pictures with which frames are compared: that of the frames, unless cpu draws the
+ * same. So a comparison shows what foveation changes, and not what backends do.
+ *
+ * @return "cpu" or "gl"; static text. Call it after gz_frame_maker_start()
+ */
+const char *gz_frame_standard_backend(const struct gz_frame_maker *maker);
+
 /** Drop what earlier frames accumulated: temporal.accumulate starts again with the next frame. */
 void gz_frame_forget(struct gz_frame_maker *maker);
 

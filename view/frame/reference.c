@@ -14,14 +14,18 @@
 
 #define GZ_LOG_MODULE "reference"
 
-/* Rows cast between two checks for a newer request. Chosen: some ms of casting. */
-#define STRIP_ROWS 32
+/* Rows cast between two checks for a newer request. Chosen: some ms of casting; a graphics device
+ * draws every triangle and every slice again for each strip. */
+enum { STRIP_ROWS_CPU = 32, STRIP_ROWS_GL = 256 };
 /* Priority below that of the frames. Chosen: half-way to the lowest. */
 #define NICENESS 10
+
+static const char cpu_name[] = "cpu";
 
 struct gz_reference_worker {
 	struct gz_reference_source source; /* its objects are the worker's own */
 	struct gz_object *objects;
+	int strip_rows;
 	pthread_t thread;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -51,7 +55,8 @@ static enum gz_result cast_strip(struct gz_reference_worker *worker,
 				 int row)
 {
 	const struct gz_foveation foveation = gz_foveation_full();
-	const int rows = image->height - row < STRIP_ROWS ? image->height - row : STRIP_ROWS;
+	const int left = image->height - row;
+	const int rows = left < worker->strip_rows ? left : worker->strip_rows;
 	const struct gz_display display = gz_display_default(image->width, rows);
 	const struct gz_picture_request request = {
 		.camera = &view->camera,
@@ -77,11 +82,11 @@ static enum gz_result cast_all(struct gz_reference_worker *worker,
 {
 	enum gz_result r = GZ_OK;
 	atomic_store(&worker->rows_asked, image->height);
-	for (int row = 0; row < image->height && r == GZ_OK; row += STRIP_ROWS) {
+	for (int row = 0; row < image->height && r == GZ_OK; row += worker->strip_rows) {
 		if (atomic_load(&worker->outdated))
 			return GZ_ERR_CANCELLED;
 		r = cast_strip(worker, view, image, row);
-		atomic_store(&worker->rows_done, row + STRIP_ROWS);
+		atomic_store(&worker->rows_done, row + worker->strip_rows);
 	}
 	return r;
 }
@@ -170,6 +175,8 @@ static void *reference_thread(void *user)
 	}
 	gz_image_free(&worker->cast);
 	gz_image_free(&worker->picture);
+	/* Its OpenGL context, if it has one, must not become current on a thread with a window. */
+	gz_picture_maker_destroy(&worker->pictures);
 	return NULL;
 }
 
@@ -198,9 +205,11 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 	worker->source.objects = worker->objects;
 	worker->transfer = *transfer;
 	const struct gz_picture_maker_params params = {
-		.backend = "cpu",
-		.backend_params = { .threads = reference_threads(source) },
+		.backend = source->backend ? source->backend : cpu_name,
+		.backend_params = { .threads = reference_threads(source),
+				    .gl_memory_bytes = source->gl_memory_bytes },
 	};
+	worker->strip_rows = strcmp(params.backend, cpu_name) == 0 ? STRIP_ROWS_CPU : STRIP_ROWS_GL;
 	if (!worker->objects ||
 	    gz_picture_maker_create(&params, source->log, &worker->pictures) != GZ_OK) {
 		free(worker->objects);
@@ -252,16 +261,18 @@ static bool same_view(const struct gz_reference_view *a, const struct gz_referen
 	       a->height == b->height;
 }
 
-void gz_reference_worker_ask(struct gz_reference_worker *worker,
+bool gz_reference_worker_ask(struct gz_reference_worker *worker,
 			     const struct gz_reference_view *view)
 {
 	pthread_mutex_lock(&worker->lock);
-	if (!worker->any_asked || !same_view(&worker->asked, view)) {
+	const bool another = !worker->any_asked || !same_view(&worker->asked, view);
+	if (another) {
 		worker->asked = *view;
 		worker->any_asked = true;
 		request_reference(worker);
 	}
 	pthread_mutex_unlock(&worker->lock);
+	return another;
 }
 
 bool gz_reference_worker_busy(struct gz_reference_worker *worker, double *out_share)
@@ -299,7 +310,6 @@ void gz_reference_worker_stop(struct gz_reference_worker **worker)
 	pthread_cond_destroy(&(*worker)->wake);
 	pthread_mutex_destroy(&(*worker)->lock);
 	gz_image_free(&(*worker)->finished);
-	gz_picture_maker_destroy(&(*worker)->pictures);
 	free((*worker)->objects);
 	free(*worker);
 	*worker = NULL;

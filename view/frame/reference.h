@@ -1,7 +1,7 @@
 /**
  * @file
  * Renders the picture that a foveated one is compared with: method `standard`, all rays, same
- * camera, by the cpu backend on low-priority threads of its own. No caller waits for it.
+ * camera, on low-priority threads of its own. No caller waits for it.
  */
 #ifndef GZ_VIEW_FRAME_REFERENCE_H
 #define GZ_VIEW_FRAME_REFERENCE_H
@@ -34,7 +34,11 @@ struct gz_reference_source {
 	 *  borrowed until gz_reference_worker_stop(), but for transfer functions. */
 	const struct gz_object *objects;
 	size_t object_count;
-	int threads; /**< threads to cast with; 0: half of the processors */
+	/** "cpu", or "gl", in an OpenGL context of the worker's own without a window. NULL: cpu.
+	 *  Static text: gz_frame_standard_backend(). */
+	const char *backend;
+	size_t gl_memory_bytes; /**< as in struct gz_backend_params */
+	int threads;            /**< threads to cast with; 0: half of the processors */
 	/** Called on the worker's thread when a picture is finished or has failed. */
 	void (*finished)(void *user);
 	void *user;
@@ -60,8 +64,8 @@ void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
 				      const struct gz_transfer *transfer);
 
 /** Request a picture and cancel the one being rendered. Does nothing if @p view equals the last
- * request. Does not block. */
-void gz_reference_worker_ask(struct gz_reference_worker *worker,
+ * request. Does not block. @return whether another picture was requested */
+bool gz_reference_worker_ask(struct gz_reference_worker *worker,
 			     const struct gz_reference_view *view);
 
 /** Whether the last request is still being rendered, and the fraction done, 0 to 1. */

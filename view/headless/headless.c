@@ -16,6 +16,7 @@
 #include "view/capture/output.h"
 #include "view/capture/video.h"
 #include "view/draw/letters.h"
+#include "view/frame/comparison.h"
 #include "view/frame/frame.h"
 #include "view/frame/stats.h"
 #include "view/gaze/gaze_source.h"
@@ -124,6 +125,7 @@ struct headless {
 	struct gz_gaze_source *source;
 	struct gz_stats_file *stats;
 	struct gz_video *video;
+	struct gz_comparison *comparison;  /* NULL: none needed yet */
 	struct gz_session_writer *session; /* NULL: not recording */
 	struct gz_replay *replay;
 	struct gz_scene_settings settings; /* of the next frame; the camera turns */
@@ -285,12 +287,30 @@ static enum gz_result add_to_video(struct headless *self, const struct gz_image 
 	return r == GZ_OK ? gz_video_show(self->video, image, shown_ns(self, frame)) : r;
 }
 
-static enum gz_result write_headless_picture(struct headless *self, struct gz_image *image,
+/* Put the standard picture beside a frame, or show the difference. */
+static enum gz_result compare_with_standard(struct headless *self,
+					    const struct gz_frame_request *request,
+					    struct gz_image *image)
+{
+	enum gz_result r = GZ_OK;
+	if (!self->comparison)
+		r = gz_comparison_start(self->maker, self->options, self->log, &self->comparison);
+	return r == GZ_OK ? gz_comparison_join(self->comparison, request, image) : r;
+}
+
+static enum gz_result write_headless_picture(struct headless *self,
+					     const struct gz_frame_request *request,
+					     struct gz_image *image,
 					     const struct gz_frame_record *record, int frame)
 {
 	const struct gz_view_options *options = self->options;
 	if (!options->out[0] && !options->video[0])
 		return GZ_OK;
+	if (self->settings.view.compare != GZ_COMPARE_NONE) {
+		const enum gz_result compared = compare_with_standard(self, request, image);
+		if (compared != GZ_OK)
+			return compared;
+	}
 	if (self->settings.view.gaze_cursor && record->gaze_known)
 		gz_frame_draw_cross(image, record->gaze);
 	if (self->settings.view.letters)
@@ -342,7 +362,7 @@ static enum gz_result make_headless_frame(struct headless *self,
 		r = gz_stats_add(self->stats, &record);
 	if (r == GZ_OK && self->replay)
 		gz_replay_compare(self->replay, &record);
-	return r == GZ_OK ? write_headless_picture(self, image, &record, frame) : r;
+	return r == GZ_OK ? write_headless_picture(self, request, image, &record, frame) : r;
 }
 
 /* Show the time point of a frame, and load the next one ahead. */
@@ -356,6 +376,7 @@ static enum gz_result show_time_point(struct headless *self, int frame)
 	enum gz_result r = GZ_OK;
 	if (wanted != gz_frame_time_point(self->maker)) {
 		r = gz_frame_take_time_point(self->maker, wanted, true);
+		gz_comparison_stop(&self->comparison);
 		if (r == GZ_OK)
 			r = gz_frame_show_taken(self->maker);
 		self->settings.time_point = gz_frame_time_point(self->maker) + 1;
@@ -504,6 +525,7 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 		tell_of_lost_picture(options, log);
 	gz_replay_close(&self.replay);
 	gz_stats_close(&self.stats);
+	gz_comparison_stop(&self.comparison);
 	gz_frame_maker_destroy(&self.maker);
 	gz_gaze_source_destroy(&self.source);
 	*out_signal = signal_seen;

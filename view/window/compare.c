@@ -1,6 +1,7 @@
 /* The part that shows the standard picture beside the method's, or the difference between them. */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <GLFW/glfw3.h>
 
@@ -29,6 +30,7 @@ struct gz_window_compare {
 	struct gz_compare drawing;
 	struct gz_reference_worker *worker;
 	int technique;         /* render.technique of the worker */
+	const char *backend;   /* of the worker */
 	struct gz_image image; /* the last standard picture */
 	bool any;              /* it is in the texture */
 	bool busy;
@@ -127,11 +129,14 @@ static void start_standard_worker(struct gz_window *window)
 	const struct gz_reference_source source = {
 		.objects = objects,
 		.object_count = count,
+		.backend = gz_frame_standard_backend(window->maker),
+		.gl_memory_bytes = (size_t)window->options->gl_memory_mib << 20,
 		.threads = (window->options->threads + 1) / 2,
 		.finished = wake_loop_for_standard,
 		.log = window->log,
 	};
 	window->compare->technique = shown_technique(window);
+	window->compare->backend = source.backend;
 	const enum gz_result r =
 		gz_reference_worker_start(&source, &scene->transfer, &window->compare->worker);
 	if (r == GZ_OK)
@@ -180,7 +185,8 @@ static void turn_compare(struct gz_window *window)
 		drop_standard(self);
 		return;
 	}
-	if (self->worker && self->technique != shown_technique(window))
+	if (self->worker && (self->technique != shown_technique(window) ||
+			     strcmp(self->backend, gz_frame_standard_backend(window->maker)) != 0))
 		drop_standard(self);
 	if (!self->worker)
 		start_standard_worker(window);
@@ -297,8 +303,11 @@ static double compare_patience_s(const struct gz_window *window)
 	return window->compare->busy ? PROGRESS_S : INFINITY;
 }
 
+/* The worker must not draw while OpenGL is loaded for another window. */
 static void close_compare_drawing(struct gz_window *window)
 {
+	gz_reference_worker_stop(&window->compare->worker);
+	window->compare->busy = false;
 	gz_compare_free(&window->compare->drawing);
 }
 
