@@ -1,0 +1,39 @@
+#include "render/illustration/tone_curve.h"
+
+/* The bin of a brightness. */
+static size_t tone_bin(float value)
+{
+	const float at = value * GZ_TONE_BINS;
+	if (at < 1)
+		return 0;
+	return at < GZ_TONE_BINS ? (size_t)at : GZ_TONE_BINS - 1; /* NaN: the last */
+}
+
+void gz_tone_count(const float *map, const uint32_t *ids, size_t count,
+		   struct gz_tone_histogram *histogram)
+{
+	for (size_t i = 0; i < count; i++)
+		histogram->counts[tone_bin(map[i])] += ids[i] != 0;
+}
+
+void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count,
+			struct gz_tone_curve *out_curve)
+{
+	uint64_t total = 0, below = 0;
+	for (size_t k = 0; k < count; k++)
+		for (size_t bin = 0; bin < GZ_TONE_BINS; bin++)
+			total += histograms[k].counts[bin];
+	for (size_t bin = 0; bin < GZ_TONE_BINS; bin++) {
+		for (size_t k = 0; k < count; k++)
+			below += histograms[k].counts[bin];
+		out_curve->values[bin] = total > 0 ? (float)((double)below / (double)total)
+						   : (float)bin / (GZ_TONE_BINS - 1);
+	}
+}
+
+void gz_tone_apply(const struct gz_tone_curve *curve, const uint32_t *ids, size_t count, float *map)
+{
+	for (size_t i = 0; i < count; i++)
+		if (ids[i] != 0)
+			map[i] = curve->values[tone_bin(map[i])];
+}

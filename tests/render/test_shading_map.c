@@ -1,0 +1,366 @@
+/* The composition of a shading map: blurred depth, tone curves, lines and each equation, by numbers
+ * worked out by hand. */
+#include "suite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh_fields.h"
+#include "render/illustration/depth_blur.h"
+#include "render/illustration/feature_lines.h"
+#include "render/illustration/shading_map.h"
+#include "render/illustration/tone_curve.h"
+
+static void check_map(const float *found, const double *right, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		if (fabs((double)found[i] - right[i]) > 1e-6)
+			print_message("pixel %zu: %.7f instead of %.7f\n", i, (double)found[i],
+				      right[i]);
+		assert_true(fabs((double)found[i] - right[i]) <= 1e-6);
+	}
+}
+
+/* ---- blurred depth ---- */
+
+static void gaussian_adds_up_to_one_and_ends_at_three_deviations(void **state)
+{
+	(void)state;
+	struct gz_gaussian gaussian;
+	for (double deviation = 0; deviation < 60; deviation += 1.7) {
+		double sum = 0, variance = 0;
+		gz_gaussian_make(deviation, &gaussian);
+		for (int i = -gaussian.radius; i <= gaussian.radius; i++) {
+			sum += (double)gaussian.weights[abs(i)];
+			variance += (double)gaussian.weights[abs(i)] * i * i;
+		}
+		assert_true(fabs(sum - 1) < 1e-6);
+		assert_true(deviation > 43 ||
+			    fabs(sqrt(variance) - deviation) <= 0.02 * deviation + 1e-9);
+	}
+	gz_gaussian_make(0, &gaussian);
+	assert_int_equal(gaussian.radius, 0);
+	gz_gaussian_make(1e9, &gaussian);
+	assert_int_equal(gaussian.radius, GZ_GAUSSIAN_RADIUS_MAX);
+}
+
+/* Weights 1/4, 1/2, 1/4; a step in a row of four, and the border repeats. */
+static void blur_is_a_weighted_mean_along_rows_and_columns(void **state)
+{
+	(void)state;
+	const struct gz_gaussian gaussian = { .radius = 1, .weights = { 0.5F, 0.25F } };
+	const float row[4] = { 0, 0, 1, 1 };
+	float found[4];
+	gz_blur_along_rows(&gaussian, &(struct gz_plane_band) { 4, 1, 0, 1 }, row, found);
+	check_map(found, (const double[]) { 0, 0.25, 0.75, 1 }, 4);
+	gz_blur_along_columns(&gaussian, &(struct gz_plane_band) { 1, 4, 0, 4 }, row, found);
+	check_map(found, (const double[]) { 0, 0.25, 0.75, 1 }, 4);
+	/* A kernel that is wider than the picture. */
+	const struct gz_gaussian wide = { .radius = 3, .weights = { 0.4F, 0.1F, 0.1F, 0.1F } };
+	gz_blur_along_rows(&wide, &(struct gz_plane_band) { 2, 1, 0, 1 }, row + 1, found);
+	check_map(found, (const double[]) { 0.3, 0.7 }, 2);
+}
+
+/* Bands of rows give what the whole gives, and wide rows what a plain sum over both sides gives. */
+static void bands_and_blocks_change_nothing(void **state)
+{
+	(void)state;
+	enum { WIDE = 150, HIGH = 23 };
+	static float in[HIGH * WIDE], once[HIGH * WIDE], whole[HIGH * WIDE], parts[HIGH * WIDE];
+	struct gz_gaussian gaussian;
+	uint32_t seed = 11;
+	for (size_t i = 0; i < HIGH * WIDE; i++)
+		in[i] = (float)field_random(&seed);
+	gz_gaussian_make(4, &gaussian);
+	const struct gz_plane_band all = { WIDE, HIGH, 0, HIGH };
+	gz_blur_along_rows(&gaussian, &all, in, once);
+	gz_blur_along_columns(&gaussian, &all, once, whole);
+	for (int first = 0; first < HIGH; first += 5) {
+		const struct gz_plane_band band = { WIDE, HIGH, first,
+						    first + 5 < HIGH ? first + 5 : HIGH };
+		gz_blur_along_columns(&gaussian, &band, once, parts);
+	}
+	assert_memory_equal(whole, parts, sizeof whole);
+	for (int i = 0; i < HIGH * WIDE; i++) {
+		double sum = 0;
+		for (int dy = -gaussian.radius; dy <= gaussian.radius; dy++)
+			for (int dx = -gaussian.radius; dx <= gaussian.radius; dx++) {
+				const int x = (int)fmin(fmax(i % WIDE + dx, 0), WIDE - 1);
+				const int y = (int)fmin(fmax(i / WIDE + dy, 0), HIGH - 1);
+				sum += (double)gaussian.weights[abs(dx)] *
+				       (double)gaussian.weights[abs(dy)] * (double)in[y * WIDE + x];
+			}
+		assert_true(fabs(sum - (double)whole[i]) < 1e-5);
+	}
+}
+
+/* ---- tone ---- */
+
+/* Five object pixels of four brightnesses; two pixels of background do not count. */
+static void tone_becomes_the_share_of_pixels_no_brighter(void **state)
+{
+	(void)state;
+	static struct gz_tone_histogram histograms[2];
+	static struct gz_tone_curve curve;
+	float map[7] = { 0.3F, 0.1F, 0.5F, 0.3F, 0.9F, 0.31F, 0 };
+	const uint32_t ids[7] = { 1, 2, 0, 1, 7, 1, 0 };
+	memset(histograms, 0, sizeof histograms);
+	gz_tone_count(map, ids, 3, &histograms[0]);
+	gz_tone_count(map + 3, ids + 3, 4, &histograms[1]);
+	gz_tone_curve_make(histograms, 2, &curve);
+	gz_tone_apply(&curve, ids, 7, map);
+	check_map(map, (const double[]) { 0.6, 0.2, 0.5, 0.6, 1, 0.8, 0 }, 7);
+}
+
+static void tone_without_objects_stays(void **state)
+{
+	(void)state;
+	static struct gz_tone_histogram empty;
+	static struct gz_tone_curve curve;
+	float map[3] = { 0, 0.5F, 1 };
+	const uint32_t ids[3] = { 1, 1, 1 };
+	gz_tone_curve_make(&empty, 1, &curve);
+	gz_tone_apply(&curve, ids, 3, map);
+	assert_true(map[0] == 0 && fabs((double)map[1] - 0.5) < 1e-3 && map[2] == 1);
+	float odd[3] = { -1, 2, NAN };
+	gz_tone_count(odd, ids, 3, &empty);
+	assert_int_equal(empty.counts[0], 1);
+	assert_int_equal(empty.counts[GZ_TONE_BINS - 1], 2);
+}
+
+/* ---- lines ---- */
+
+/* Draw "# silhouette", "- inner line" and ". none" of a picture of 7 columns. */
+static void check_lines(const struct gz_line_planes *planes, int height, enum gz_line_filter filter,
+			const char *right)
+{
+	float lines[7 * 7];
+	char found[7 * 7 + 1] = { 0 };
+	/* In two bands, as threads would. */
+	gz_feature_lines(planes, &(struct gz_plane_band) { 7, height, 0, 2 }, filter, 0.05F, lines);
+	gz_feature_lines(planes, &(struct gz_plane_band) { 7, height, 2, height }, filter, 0.05F,
+			 lines);
+	for (int i = 0; i < 7 * height; i++) {
+		found[i] = lines[i] == GZ_LINE_SILHOUETTE ? '#' : '.';
+		found[i] = lines[i] == GZ_LINE_INNER ? '-' : found[i];
+	}
+	assert_string_equal(found, right);
+}
+
+/* An object on the background, and each filter. */
+static void silhouettes_lie_on_the_nearer_object(void **state)
+{
+	(void)state;
+	uint32_t ids[7 * 7] = { 0 };
+	float depth[7 * 7];
+	for (int i = 0; i < 49; i++) {
+		const int inside = i % 7 >= 1 && i % 7 <= 6 && i / 7 >= 1;
+		ids[i] = inside ? 4 : 0;
+		depth[i] = inside ? 0.5F : 1;
+	}
+	const struct gz_line_planes planes = { ids, depth };
+	check_lines(&planes, 7, GZ_LINES_4,
+		    "......."
+		    ".######"
+		    ".#....."
+		    ".#....."
+		    ".#....."
+		    ".#....."
+		    ".#.....");
+	check_lines(&planes, 7, GZ_LINES_8,
+		    "......."
+		    ".######"
+		    ".#....."
+		    ".#....."
+		    ".#....."
+		    ".#....."
+		    ".#.....");
+	check_lines(&planes, 7, GZ_LINES_12,
+		    "......."
+		    ".######"
+		    ".######"
+		    ".##...."
+		    ".##...."
+		    ".##...."
+		    ".##....");
+	check_lines(&planes, 7, GZ_LINES_24,
+		    "......."
+		    ".######"
+		    ".######"
+		    ".##...."
+		    ".##...."
+		    ".##...."
+		    ".##....");
+}
+
+/* Figure 4.4 of the thesis: the object in front has a lower id than one beside it and a higher one
+ * than the other. Where as much is nearer as is farther there is no line. At one depth the lower id
+ * has it. */
+static void order_of_ids_does_not_matter(void **state)
+{
+	(void)state;
+	static const char rows[] = "1122233"
+				   "1122233"
+				   "6665555"
+				   "6665555";
+	uint32_t ids[4 * 7];
+	float depth[4 * 7];
+	for (int i = 0; i < 28; i++) {
+		ids[i] = (uint32_t)(rows[i] - '0');
+		depth[i] = i >= 14 ? 0.4F : 0.22F;
+		depth[i] = ids[i] == 2 ? 0.2F : depth[i];
+	}
+	const struct gz_line_planes planes = { ids, depth };
+	check_lines(&planes, 4, GZ_LINES_4,
+		    "..#.#.."
+		    "#.###.#"
+		    "......."
+		    "...#...");
+}
+
+/* One object with a step of 0.3 and a slope: the step is an inner line on the nearer side. */
+static void steps_within_an_object_are_inner_lines(void **state)
+{
+	(void)state;
+	uint32_t ids[3 * 7];
+	float depth[3 * 7];
+	for (int i = 0; i < 21; i++) {
+		ids[i] = 9;
+		depth[i] = 0.02F * (float)(i % 7) + (i % 7 >= 4 ? 0.3F : 0);
+	}
+	const struct gz_line_planes planes = { ids, depth };
+	check_lines(&planes, 3, GZ_LINES_4,
+		    "...-..."
+		    "...-..."
+		    "...-...");
+}
+
+/* ---- the equations ---- */
+
+static void fading_moves_towards_white(void **state)
+{
+	(void)state;
+	float map[3] = { 0.2F, 0.2F, 0.2F };
+	const float values[3] = { 0, 0.5F, 1 };
+	gz_shading_fade(map, values, 3, 0.5F);
+	check_map(map, (const double[]) { 0.2, 0.4, 0.6 }, 3);
+}
+
+static void edge_light_and_shadow_are_both_parts_of_one_mask(void **state)
+{
+	(void)state;
+	const float depth[4] = { 0.2F, 0.2F, 0.8F, 0.8F };
+	const float blurred[4] = { 0.2F, 0.4F, 0.6F, 0.8F };
+	float light[4] = { 0.5F, 0.5F, 0.5F, 0.5F }, shadow[4] = { 0.5F, 0.5F, 0.5F, 0.5F };
+	float bright[4] = { 0.95F, 0.95F, 0.95F, 0.95F };
+	gz_shading_add_edge_light(light, blurred, depth, 4, 0.5F);
+	check_map(light, (const double[]) { 0.5, 0.6, 0.5, 0.5 }, 4);
+	gz_shading_add_edge_light(bright, blurred, depth, 4, 1);
+	check_map(bright, (const double[]) { 0.95, 1, 0.95, 0.95 }, 4);
+	gz_shading_add_overlap_shadow(shadow, blurred, depth, 4, 0.5F);
+	check_map(shadow, (const double[]) { 0.5, 0.5, 0.45, 0.5 }, 4);
+}
+
+static void haze_moves_towards_its_background(void **state)
+{
+	(void)state;
+	float map[3] = { 0.2F, 0.2F, 0.2F };
+	const float haze[3] = { 0, 0.5F, 1 };
+	gz_shading_add_haze(map, haze, 3, 0.5F, 0.6F);
+	check_map(map, (const double[]) { 0.2, 0.3, 0.4 }, 3);
+}
+
+static void lines_darken_and_never_brighten(void **state)
+{
+	(void)state;
+	const float strong[5] = { GZ_LINE_NONE, GZ_LINE_INNER, GZ_LINE_SILHOUETTE,
+				  GZ_LINE_SILHOUETTE, GZ_LINE_INNER };
+	const float thin[5] = { GZ_LINE_NONE, GZ_LINE_NONE, GZ_LINE_SILHOUETTE, GZ_LINE_SILHOUETTE,
+				GZ_LINE_INNER };
+	const float fade[5] = { 0.5F, 0.25F, 0.5F, 0.5F, 0.5F };
+	const float tone[5] = { 0.9F, 0.9F, 0.9F, 0.1F, 0.9F };
+	struct gz_shading_lines lines = { strong, NULL, NULL, false };
+	float map[5];
+	memcpy(map, tone, sizeof map);
+	gz_shading_draw_lines(map, &lines, 5, 0.8F);
+	check_map(map, (const double[]) { 0.9, 0.2, 0.2, 0.1, 0.2 }, 5);
+	/* (1 - 1/4) 0.2 + 1/4 1 = 0.4 */
+	lines = (struct gz_shading_lines) { strong, thin, fade, false };
+	memcpy(map, tone, sizeof map);
+	gz_shading_draw_lines(map, &lines, 5, 0.8F);
+	check_map(map, (const double[]) { 0.9, 0.4, 0.2, 0.1, 0.2 }, 5);
+	/* The last pixel's thin line is an inner one: half of it goes. */
+	lines.thin_silhouettes = true;
+	memcpy(map, tone, sizeof map);
+	gz_shading_draw_lines(map, &lines, 5, 0.8F);
+	check_map(map, (const double[]) { 0.9, 0.4, 0.2, 0.1, 0.6 }, 5);
+}
+
+/* All steps on three pixels: background, and two objects with weights of their own. */
+static void steps_come_in_the_order_of_the_thesis(void **state)
+{
+	(void)state;
+	const uint32_t ids[4] = { 0, 1, 2, 3 };
+	const float depth[4] = { 1, 0.2F, 0.6F, 0.6F }, scene[4] = { 1, 0.5F, 0.5F, 0.5F };
+	const float edge[4] = { 1, 0.4F, 0.6F, 0.6F }, shadow[4] = { 1, 0.2F, 0.4F, 0.4F };
+	const float haze[4] = { 1, 0, 0.5F, 0.5F };
+	const float strong[4] = { 0, 0, GZ_LINE_INNER, GZ_LINE_INNER }, thin[4] = { 0 };
+	const struct gz_shading_layers layers = { ids,    depth, scene,  edge,
+						  shadow, haze,  strong, thin };
+	const struct gz_shading_weights weights[2] = {
+		{ .scene = 1, .edge_light = 1 },
+		{ .overlap_shadow = 1, .haze = 0.5F, .lines = 0.8F, .background = 1 },
+	};
+	float map[4] = { 0.3F, 0.4F, 0.5F, 0.5F };
+	gz_shading_map_compose(&layers, &(struct gz_plane_band) { 4, 1, 0, 1 }, weights, 2, map);
+	/* Object 1: 0.4 -> 0.5 0.4 + 0.5 = 0.7 -> + (0.4 - 0.2) = 0.9. Object 2 and those after it:
+	 * 0.5 -> (1 - 0.2) 0.5 = 0.4 -> 0.75 0.4 + 0.25 = 0.55, and a line of which a quarter
+	 * fades: 0.75 0.2 + 0.25 = 0.4. */
+	check_map(map, (const double[]) { 1, 0.9, 0.4, 0.4 }, 4);
+}
+
+/* Steps without planes are left out, over spans longer than those that are composed at once. */
+static void absent_planes_leave_their_step_out(void **state)
+{
+	(void)state;
+	enum { WIDE = 700 };
+	static uint32_t ids[WIDE];
+	static float depth[WIDE], map[WIDE], haze[WIDE];
+	for (size_t i = 0; i < WIDE; i++) {
+		ids[i] = i < 650;
+		map[i] = 0.5F;
+		haze[i] = 0.5F;
+	}
+	struct gz_shading_layers layers = { .ids = ids, .depth = depth };
+	const struct gz_shading_weights weights = { 1, 1, 1, 1, 1, 0 };
+	const struct gz_plane_band band = { WIDE, 1, 0, 1 };
+	gz_shading_map_compose(&layers, &band, &weights, 1, map);
+	for (size_t i = 0; i < WIDE; i++)
+		assert_true(map[i] == (i < 650 ? 0.5F : 1.0F));
+	layers.haze = haze;
+	gz_shading_map_compose(&layers, &band, &weights, 1, map);
+	for (size_t i = 0; i < WIDE; i++)
+		assert_true(map[i] == (i < 650 ? 0.25F : 1.0F));
+}
+
+TEST_SUITE(shading_map)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(gaussian_adds_up_to_one_and_ends_at_three_deviations),
+		cmocka_unit_test(blur_is_a_weighted_mean_along_rows_and_columns),
+		cmocka_unit_test(bands_and_blocks_change_nothing),
+		cmocka_unit_test(tone_becomes_the_share_of_pixels_no_brighter),
+		cmocka_unit_test(tone_without_objects_stays),
+		cmocka_unit_test(silhouettes_lie_on_the_nearer_object),
+		cmocka_unit_test(order_of_ids_does_not_matter),
+		cmocka_unit_test(steps_within_an_object_are_inner_lines),
+		cmocka_unit_test(fading_moves_towards_white),
+		cmocka_unit_test(edge_light_and_shadow_are_both_parts_of_one_mask),
+		cmocka_unit_test(haze_moves_towards_its_background),
+		cmocka_unit_test(lines_darken_and_never_brighten),
+		cmocka_unit_test(steps_come_in_the_order_of_the_thesis),
+		cmocka_unit_test(absent_planes_leave_their_step_out),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
