@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "render/illustration/shading_parameters.h"
+
 #define AT(field) offsetof(struct gz_shading_settings, field)
 
 const struct gz_option gz_shading_options[] = {
@@ -10,8 +12,9 @@ const struct gz_option gz_shading_options[] = {
 	  .preset = "-1 1 0", .help = "towards the light: right, up, towards the viewer" },
 	{ "shading_map.main_light", GZ_OPTION_DOUBLE, AT(main_light), 0, 1, .preset = "0.7",
 	  .help = "weight of the main light" },
-	{ "shading_map.main_light_smoothing", GZ_OPTION_INT, AT(main_light_smoothing), 0, 8,
-	  .preset = "0", .help = "level of smoothing of the surface under the main light" },
+	{ "shading_map.main_light_smoothing", GZ_OPTION_INT, AT(main_light_smoothing), 0,
+	  GZ_SHADING_LEVELS - 1, .preset = "0",
+	  .help = "level of smoothing of the surface under the main light" },
 	{ "shading_map.plateau_light", GZ_OPTION_DOUBLE, AT(plateau_light), 0, 1, .preset = "0.35",
 	  .help = "weight of the light at the viewer" },
 	{ "shading_map.grazing_light", GZ_OPTION_DOUBLE, AT(grazing_light), 0, 1, .preset = "0.525",
