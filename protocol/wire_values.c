@@ -1,5 +1,6 @@
 #include "protocol/wire_values.h"
 
+#include <endian.h>
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -7,18 +8,80 @@
 
 #include "base/clock.h"
 
-/* Callback of msgpack-c for each piece of a value. A result other than 0 ends the value. */
-static int append_packed(void *user, const char *bytes, size_t size)
+/* Messages are packed here and not by msgpack-c, which calls a function for each piece of a value:
+ * a gaze message has two hundred pieces, for each sample. The formats are those of MessagePack's
+ * specification, section "Formats". */
+
+/* Room for @p size further bytes; NULL if the message is full. */
+static inline unsigned char *take_room(struct gz_pack *pack, size_t size)
 {
-	struct gz_pack *pack = user;
 	struct gz_wire_message *message = pack->message;
 	if (pack->full || size > sizeof message->bytes - message->size) {
 		pack->full = true;
-		return -1;
+		return NULL;
 	}
-	memcpy(message->bytes + message->size, bytes, size);
+	unsigned char *room = message->bytes + message->size;
 	message->size += size;
-	return 0;
+	return room;
+}
+
+static void append_bytes(struct gz_pack *pack, const char *bytes, size_t size)
+{
+	unsigned char *room = take_room(pack, size);
+	if (room)
+		memcpy(room, bytes, size);
+}
+
+static void append_byte(struct gz_pack *pack, unsigned byte)
+{
+	unsigned char *room = take_room(pack, 1);
+	if (room)
+		*room = (unsigned char)byte;
+}
+
+static void append_16(struct gz_pack *pack, unsigned char format, uint16_t value)
+{
+	unsigned char *room = take_room(pack, 3);
+	if (!room)
+		return;
+	value = htobe16(value);
+	*room = format;
+	memcpy(room + 1, &value, sizeof value);
+}
+
+static void append_32(struct gz_pack *pack, unsigned char format, uint32_t value)
+{
+	unsigned char *room = take_room(pack, 5);
+	if (!room)
+		return;
+	value = htobe32(value);
+	*room = format;
+	memcpy(room + 1, &value, sizeof value);
+}
+
+static void append_64(struct gz_pack *pack, unsigned char format, uint64_t value)
+{
+	unsigned char *room = take_room(pack, 9);
+	if (!room)
+		return;
+	value = htobe64(value);
+	*room = format;
+	memcpy(room + 1, &value, sizeof value);
+}
+
+/* The head of a text of @p size bytes. */
+static void append_text_head(struct gz_pack *pack, size_t size)
+{
+	if (size < 32) {
+		append_byte(pack, 0xa0 | (unsigned)size);
+	} else if (size <= UINT8_MAX) {
+		append_byte(pack, 0xd9);
+		append_byte(pack, (unsigned)size);
+	} else if (size <= UINT16_MAX) {
+		append_16(pack, 0xda, (uint16_t)size);
+	} else {
+		append_32(pack, 0xdb, (uint32_t)size);
+	}
 }
 
 void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message)
@@ -27,7 +90,6 @@ void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message)
 	memset(message->pupil, 0, sizeof message->pupil);
 	pack->message = message;
 	pack->full = false;
-	msgpack_packer_init(&pack->packer, pack, append_packed);
 }
 
 enum gz_result gz_pack_end(struct gz_pack *pack)
@@ -41,26 +103,39 @@ enum gz_result gz_pack_end(struct gz_pack *pack)
 
 static void pack_key(struct gz_pack *pack, const char *key)
 {
-	if (key)
-		msgpack_pack_str_with_body(&pack->packer, key, strlen(key));
+	if (!key)
+		return;
+	size_t size = strlen(key);
+	append_text_head(pack, size);
+	append_bytes(pack, key, size);
 }
 
 void gz_pack_map(struct gz_pack *pack, const char *key, size_t pairs)
 {
 	pack_key(pack, key);
-	msgpack_pack_map(&pack->packer, pairs);
+	if (pairs < 16)
+		append_byte(pack, 0x80 | (unsigned)pairs);
+	else if (pairs <= UINT16_MAX)
+		append_16(pack, 0xde, (uint16_t)pairs);
+	else
+		append_32(pack, 0xdf, (uint32_t)pairs);
 }
 
 void gz_pack_array(struct gz_pack *pack, const char *key, size_t elements)
 {
 	pack_key(pack, key);
-	msgpack_pack_array(&pack->packer, elements);
+	if (elements < 16)
+		append_byte(pack, 0x90 | (unsigned)elements);
+	else if (elements <= UINT16_MAX)
+		append_16(pack, 0xdc, (uint16_t)elements);
+	else
+		append_32(pack, 0xdd, (uint32_t)elements);
 }
 
 void gz_pack_nil(struct gz_pack *pack, const char *key)
 {
 	pack_key(pack, key);
-	msgpack_pack_nil(&pack->packer);
+	append_byte(pack, 0xc0);
 }
 
 /* Length of the UTF-8 character at @p text, bytes; 0 if it is not one. RFC 3629, section 4. */
@@ -93,7 +168,7 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 {
 	pack_key(pack, key);
 	size_t left = strlen(text), good = 0;
-	msgpack_pack_str(&pack->packer, left);
+	append_text_head(pack, left);
 	while (good < left) {
 		/* The final NUL is no continuation byte, so this never reads past it. */
 		size_t length = utf8_character_length((const unsigned char *)text + good);
@@ -101,58 +176,94 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 			good += length;
 			continue;
 		}
-		append_packed(pack, text, good);
-		append_packed(pack, "?", 1);
+		append_bytes(pack, text, good);
+		append_byte(pack, '?');
 		text += good + 1;
 		left -= good + 1;
 		good = 0;
 	}
-	append_packed(pack, text, good);
+	append_bytes(pack, text, good);
 }
 
 void gz_pack_bool(struct gz_pack *pack, const char *key, bool value)
 {
 	pack_key(pack, key);
-	if (value)
-		msgpack_pack_true(&pack->packer);
-	else
-		msgpack_pack_false(&pack->packer);
+	append_byte(pack, value ? 0xc3 : 0xc2);
+}
+
+static void append_unsigned(struct gz_pack *pack, uint64_t value)
+{
+	if (value < 0x80) {
+		append_byte(pack, (unsigned)value);
+	} else if (value <= UINT8_MAX) {
+		append_byte(pack, 0xcc);
+		append_byte(pack, (unsigned)value);
+	} else if (value <= UINT16_MAX) {
+		append_16(pack, 0xcd, (uint16_t)value);
+	} else if (value <= UINT32_MAX) {
+		append_32(pack, 0xce, (uint32_t)value);
+	} else {
+		append_64(pack, 0xcf, value);
+	}
+}
+
+static void append_negative(struct gz_pack *pack, int64_t value)
+{
+	if (value >= -32) {
+		append_byte(pack, 0xff & (unsigned)value);
+	} else if (value >= INT8_MIN) {
+		append_byte(pack, 0xd0);
+		append_byte(pack, 0xff & (unsigned)value);
+	} else if (value >= INT16_MIN) {
+		append_16(pack, 0xd1, (uint16_t)value);
+	} else if (value >= INT32_MIN) {
+		append_32(pack, 0xd2, (uint32_t)value);
+	} else {
+		append_64(pack, 0xd3, (uint64_t)value);
+	}
 }
 
 void gz_pack_int(struct gz_pack *pack, const char *key, int64_t value)
 {
 	pack_key(pack, key);
-	msgpack_pack_int64(&pack->packer, value);
+	if (value < 0)
+		append_negative(pack, value);
+	else
+		append_unsigned(pack, (uint64_t)value);
 }
 
 void gz_pack_uint(struct gz_pack *pack, const char *key, uint64_t value)
 {
 	pack_key(pack, key);
-	msgpack_pack_uint64(&pack->packer, value);
+	append_unsigned(pack, value);
 }
 
 void gz_pack_fixed_int64(struct gz_pack *pack, const char *key, int64_t value)
 {
 	pack_key(pack, key);
-	msgpack_pack_fix_int64(&pack->packer, value);
+	append_64(pack, 0xd3, (uint64_t)value);
 }
 
 void gz_pack_float(struct gz_pack *pack, const char *key, float value)
 {
+	uint32_t bits;
 	pack_key(pack, key);
+	memcpy(&bits, &value, sizeof bits);
 	if (isfinite(value))
-		msgpack_pack_float(&pack->packer, value);
+		append_32(pack, 0xca, bits);
 	else
-		msgpack_pack_nil(&pack->packer);
+		append_byte(pack, 0xc0);
 }
 
 void gz_pack_double(struct gz_pack *pack, const char *key, double value)
 {
+	uint64_t bits;
 	pack_key(pack, key);
+	memcpy(&bits, &value, sizeof bits);
 	if (isfinite(value))
-		msgpack_pack_double(&pack->packer, value);
+		append_64(pack, 0xcb, bits);
 	else
-		msgpack_pack_nil(&pack->packer);
+		append_byte(pack, 0xc0);
 }
 
 void gz_pack_doubles(struct gz_pack *pack, const char *key, const double *values, size_t count)

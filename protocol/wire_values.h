@@ -20,7 +20,6 @@
 
 /** A message being packed. */
 struct gz_pack {
-	msgpack_packer packer;
 	struct gz_wire_message *message;
 	bool full;
 };
