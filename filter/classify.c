@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "filter/angle.h"
+#include "filter/classifier/forest_lists.h"
 #include "filter/classify_internal.h"
 
 /* The measured period moves by this fraction towards each new one, and by at most half of itself,
@@ -312,7 +313,10 @@ static void label_by_forest(struct gz_classify_state *state, const struct gz_for
 {
 	int32_t scores[GZ_FOREST_CLASSES];
 	struct gz_classify_entry *entry = gz_classify_at(state, index);
-	if (entry->valid)
+	const struct gz_forest_lists *lists = gz_forest_lists_of(forest);
+	if (entry->valid && lists)
+		gz_forest_lists_score(lists, features, scores);
+	else if (entry->valid)
 		gz_forest_score(forest, features, scores);
 	entry->learned = gz_forest_label(memory, entry->valid ? scores : NULL, entry->still_scene);
 }

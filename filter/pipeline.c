@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "filter/angle.h"
+#include "filter/classifier/forest_lists.h"
 
 /* Most steps that the mean of the noise takes into account. Chosen: seconds to minutes. */
 static const double NOISE_COUNT_MAX = 20000;
@@ -18,6 +19,11 @@ void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_par
 		.event = GZ_EVENT_LOST,
 		.point = { 0.5f, 0.5f },
 	};
+	if (pipeline->params.classify.source != GZ_CLASSIFY_LEARNED)
+		return;
+	/* Made here, because a step does not allocate. */
+	(void)gz_forest_lists_of(&gz_forest_at_once);
+	(void)gz_forest_lists_of(&gz_forest_certain);
 }
 
 /* Unit vectors of the directions in which the outermost samples of a fixation are kept. */

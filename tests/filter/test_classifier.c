@@ -10,6 +10,8 @@
 
 #include "base/clock.h"
 #include "filter/classifier/forest.h"
+#include "filter/classifier/forest_lists.h"
+#include "filter/classifier/whole.h"
 #include "filter/pipeline.h"
 #include "sim/tracker.h"
 
@@ -159,6 +161,43 @@ static void any_samples_give_finite_features_and_the_same_again(void **state)
 	}
 }
 
+/* Lists of the questions give the scores of the trees: with the features of a resting eye, with
+ * saccades and losses, and with features that are exactly at thresholds or beyond all of them. */
+static void lists_of_questions_give_the_scores_of_the_trees(void **state)
+{
+	(void)state;
+	enum { SAMPLES = 3000 };
+	static const struct gz_forest *const forests[] = { &gz_forest_at_once, &gz_forest_certain };
+	static struct feed feed;
+	struct gz_random random = gz_random_seeded(3, 3);
+	feed_open(&feed, 500);
+	for (int k = 0; k < SAMPLES; k++) {
+		double size = k % 100 < 10 ? 5 : 0.05;
+		feed_point(&feed, size * gz_random_normal(&random),
+			   size * gz_random_normal(&random), k % 300 > 20);
+		for (int i = 0; i < 2; i++) {
+			const struct gz_forest *forest = forests[i];
+			const struct gz_forest_node *node =
+				&forest->node[gz_random_bits(&random) % 4000];
+			float features[GZ_MOVEMENT_FEATURES];
+			int32_t by_trees[GZ_FOREST_CLASSES], by_lists[GZ_FOREST_CLASSES];
+			memcpy(features, feed.features, sizeof features);
+			if (k % 2)
+				features[node->feature] = node->threshold;
+			for (int f = 0; k % 5 == 0 && f < GZ_MOVEMENT_FEATURES; f++)
+				features[f] = f % 2 ? 1e9F : -1e9F;
+			const struct gz_forest_lists *lists = gz_forest_lists_of(forest);
+			assert_non_null(lists);
+			gz_forest_score(forest, features, by_trees);
+			gz_forest_lists_score(lists, features, by_lists);
+			assert_memory_equal(by_lists, by_trees, sizeof by_trees);
+		}
+	}
+	assert_null(gz_forest_lists_of(&gz_forest_whole));
+	assert_ptr_equal(gz_forest_lists_of(&gz_forest_certain),
+			 gz_forest_lists_of(&gz_forest_certain));
+}
+
 static void features_and_forests_cost_a_few_microseconds(void **state)
 {
 	(void)state;
@@ -194,6 +233,7 @@ TEST_SUITE(classifier)
 		cmocka_unit_test(a_burst_is_measured),
 		cmocka_unit_test(a_loss_is_measured_and_holds_the_place),
 		cmocka_unit_test(any_samples_give_finite_features_and_the_same_again),
+		cmocka_unit_test(lists_of_questions_give_the_scores_of_the_trees),
 		cmocka_unit_test(features_and_forests_cost_a_few_microseconds),
 	};
 	return cmocka_run_group_tests_name("filter.classifier", tests, NULL, NULL);
