@@ -9,7 +9,6 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "protocol/board/board_door.h"
-#include "protocol/wire.h"
 
 /* How long a daemon that did not answer is left alone, ms. Chosen. */
 enum { ASK_AGAIN_MS = 1000 };
@@ -35,38 +34,44 @@ static enum gz_result copy_topics(struct gz_board_link *link, const char *const 
 	if (!topics)
 		topics = everything;
 	for (size_t i = 0; topics[i]; i++)
-		size += strlen(topics[i]) + 1;
+		size += GZ_BOARD_TOPIC_SIZE + strlen(topics[i]) + 1;
 	char *place = link->topics = malloc(size > 0 ? size : 1);
 	if (!place)
 		return GZ_ERR_NO_MEM;
-	for (; topics[link->topic_count]; link->topic_count++)
-		place = stpcpy(place, topics[link->topic_count]) + 1;
+	for (; topics[link->topic_count]; link->topic_count++) {
+		memcpy(place, GZ_BOARD_TOPIC, GZ_BOARD_TOPIC_SIZE);
+		place = stpcpy(place + GZ_BOARD_TOPIC_SIZE, topics[link->topic_count]) + 1;
+	}
 	return GZ_OK;
+}
+
+static const char *first_topic(const struct gz_board_link *link)
+{
+	return link->topics + GZ_BOARD_TOPIC_SIZE;
+}
+
+static const char *topic_after(const char *topic)
+{
+	return topic + strlen(topic) + 1 + GZ_BOARD_TOPIC_SIZE;
 }
 
 /* Subscribe to the caller's topics, or end that. */
 static bool set_topics(const struct gz_board_link *link, int option)
 {
-	const char *topic = link->topics;
-	for (size_t i = 0; i < link->topic_count; i++, topic += strlen(topic) + 1)
+	const char *topic = first_topic(link);
+	for (size_t i = 0; i < link->topic_count; i++, topic = topic_after(topic))
 		if (zmq_setsockopt(link->socket, option, topic, strlen(topic)) != 0)
 			return false;
 	return true;
 }
 
-/* Subscribe to the topic of readers of the board, or end that. */
-static void set_board_topic(const struct gz_board_link *link, int option)
+/* Tell the daemon which topics are read at the board, or end that. */
+static void set_board_topics(const struct gz_board_link *link, int option)
 {
-	bool pupils =
-		gz_board_link_wants(link, GZ_TOPIC_PUPIL_RIGHT, strlen(GZ_TOPIC_PUPIL_RIGHT)) ||
-		gz_board_link_wants(link, GZ_TOPIC_PUPIL_LEFT, strlen(GZ_TOPIC_PUPIL_LEFT));
-	if (link->newest_only)
-		return; /* the daemon wakes only readers of the stream */
-	if (pupils)
-		zmq_setsockopt(link->socket, option, GZ_BOARD_PUPILS_TOPIC,
-			       GZ_BOARD_PUPILS_TOPIC_SIZE);
-	else
-		zmq_setsockopt(link->socket, option, GZ_BOARD_TOPIC, GZ_BOARD_TOPIC_SIZE);
+	const char *topic = first_topic(link);
+	for (size_t i = 0; i < link->topic_count; i++, topic = topic_after(topic))
+		zmq_setsockopt(link->socket, option, topic - GZ_BOARD_TOPIC_SIZE,
+			       GZ_BOARD_TOPIC_SIZE + strlen(topic));
 }
 
 /* Drop what the socket has collected: the board has it, too. */
@@ -83,7 +88,7 @@ static void enter_board(struct gz_board_link *link)
 		return;
 	link->source = GZ_BOARD_SOURCE_BOARD;
 	set_topics(link, ZMQ_UNSUBSCRIBE);
-	set_board_topic(link, ZMQ_SUBSCRIBE);
+	set_board_topics(link, ZMQ_SUBSCRIBE);
 	drop_collected(link);
 }
 
@@ -91,7 +96,7 @@ static void leave_board(struct gz_board_link *link, enum gz_board_source source)
 {
 	if (link->source == GZ_BOARD_SOURCE_BOARD) {
 		drop_collected(link);
-		set_board_topic(link, ZMQ_UNSUBSCRIBE);
+		set_board_topics(link, ZMQ_UNSUBSCRIBE);
 		set_topics(link, ZMQ_SUBSCRIBE);
 	}
 	link->source = source;
@@ -257,8 +262,8 @@ void gz_board_link_give_up(struct gz_board_link *link)
 
 bool gz_board_link_wants(const struct gz_board_link *link, const char *topic, size_t size)
 {
-	const char *wanted = link->topics;
-	for (size_t i = 0; i < link->topic_count; i++, wanted += strlen(wanted) + 1) {
+	const char *wanted = first_topic(link);
+	for (size_t i = 0; i < link->topic_count; i++, wanted = topic_after(wanted)) {
 		size_t length = strlen(wanted);
 		if (length <= size && memcmp(wanted, topic, length) == 0)
 			return true;

@@ -5,9 +5,10 @@
  * subscriber's socket. Internal; see connection.h.
  *
  * The socket stays connected while the board is read: it tells when the daemon ends and returns,
- * and the daemon counts its readers by their connections. It subscribes to a topic without messages
- * then. Until it is decided from where messages come, the socket collects them, and nothing is read
- * from it; so each message is read once, whatever is decided.
+ * and the daemon counts its readers by their connections. It subscribes to topics without messages
+ * then, which tell the daemon what is read. Until it is decided from where messages come, the
+ * socket collects them, and nothing is read from it; so each message is read once, whatever is
+ * decided.
  */
 #ifndef GZ_CLIENT_BOARD_LINK_H
 #define GZ_CLIENT_BOARD_LINK_H
@@ -35,7 +36,7 @@ enum gz_board_source {
 struct gz_board_link {
 	void *socket;     /**< SUB; the subscriber's */
 	bool newest_only; /**< the newest gaze is read, on the channel "latest" */
-	char *topics;     /**< a copy: each with its NUL */
+	char *topics;     /**< a copy: each with its NUL, after GZ_BOARD_TOPIC */
 	size_t topic_count;
 	int64_t opened_ns;           /**< older messages are not read */
 	char path[GZ_ENDPOINT_SIZE]; /**< of the socket at which boards are asked for */

@@ -20,6 +20,7 @@ void gz_message_maker_init(struct gz_message_maker *maker, const struct gz_confi
 	gz_pipeline_init(&maker->pipeline, params, display);
 	maker->surface_count = config->surface_count;
 	memcpy(maker->surface, config->surface, sizeof maker->surface);
+	maker->without_surfaces = false;
 }
 
 void gz_message_maker_reset(struct gz_message_maker *maker)
@@ -58,7 +59,8 @@ void gz_message_maker_step(struct gz_message_maker *maker, const struct gz_sampl
 		gz_wire_encode_fixation(&step->fixations[i],
 					append_message(out, GZ_TOPIC_FIXATIONS, ""));
 	/* After the messages to which they refer. */
-	for (size_t i = 0; i < maker->surface_count; i++)
+	size_t surfaces = maker->without_surfaces ? 0 : maker->surface_count;
+	for (size_t i = 0; i < surfaces; i++)
 		gz_wire_encode_surface(&step->gaze, step->fixations, step->fixation_count,
 				       maker->surface[i],
 				       append_message(out, GZ_TOPIC_SURFACES, maker->surface[i]));
@@ -216,14 +218,19 @@ static uint32_t connected_readers(const struct gz_publisher *publisher)
  */
 static bool has_remote_readers(const struct gz_publisher *publisher)
 {
-	return connected_readers(publisher) > publisher->sums.boards ||
-	       publisher->sums.subscriptions > publisher->sums.boards;
+	return connected_readers(publisher) > publisher->sums.boards || publisher->sums.remote > 0;
+}
+
+/* Whether readers have come that may not have been asked yet what they want. */
+static bool has_new_readers(const struct gz_publisher *publisher)
+{
+	return connected_readers(publisher) != publisher->settled;
 }
 
 /* Whether readers may be waiting at the board. */
 static bool has_board_readers(const struct gz_publisher *publisher)
 {
-	return publisher->sums.boards > 0 || connected_readers(publisher) != publisher->settled;
+	return publisher->sums.boards > 0 || has_new_readers(publisher);
 }
 
 static void write_board(struct gz_publisher *publisher, const char *topic, const void *bytes,
@@ -374,6 +381,11 @@ void gz_publisher_update(struct gz_publisher *publisher)
 	accept_connections(publisher->latest.socket);
 	publisher->settled = connected_readers(publisher);
 	update_subscriptions(publisher);
+}
+
+bool gz_publisher_wants_surfaces(const struct gz_publisher *publisher)
+{
+	return publisher->sums.surfaces > 0 || has_new_readers(publisher);
 }
 
 uint32_t gz_publisher_subscribers(const struct gz_publisher *publisher)

@@ -25,7 +25,8 @@
 /*
  * Messages: a pipeline step and the encoding of its results, without sockets or a clock. Nothing
  * else decides what the stream carries: from the start state, the same samples, settings and
- * display give the same bytes, except for publish_ns.
+ * display give the same bytes, except for publish_ns. Messages about surfaces and about pupils are
+ * made only while somebody wants them.
  */
 
 /** Room for a topic with its NUL: "surfaces." and a name. */
@@ -52,6 +53,7 @@ struct gz_message_maker {
 	struct gz_pipeline pipeline;
 	size_t surface_count;
 	char surface[GZ_SURFACES_MAX][GZ_NAME_SIZE];
+	bool without_surfaces; /**< nobody wants messages about surfaces: none are made */
 };
 
 /**
@@ -130,6 +132,10 @@ void gz_publisher_send_one(struct gz_publisher *publisher, const char *topic, co
 /** Update the numbers of connections and subscriptions. Never waits; call it several times a
  * second. */
 void gz_publisher_update(struct gz_publisher *publisher);
+
+/** Whether a reader may want messages about surfaces: one has subscribed to them, or readers have
+ * come since the last update. */
+bool gz_publisher_wants_surfaces(const struct gz_publisher *publisher);
 
 /** Present connections of both channels. */
 uint32_t gz_publisher_subscribers(const struct gz_publisher *publisher);

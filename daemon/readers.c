@@ -11,7 +11,8 @@ struct reader {
 	uint64_t identity; /* 0: none */
 	bool refused;
 	uint16_t count;
-	uint16_t used; /* bytes of topics */
+	uint16_t boards; /* topics of it that are read at the board */
+	uint16_t used;   /* bytes of topics */
 	unsigned char topics[GZ_READER_TOPICS_SIZE];
 };
 
@@ -57,30 +58,50 @@ static size_t find_topic(const struct reader *reader, const void *topic, size_t 
 	return at;
 }
 
-static bool is_topic(const unsigned char *topic, size_t size, const char *other, size_t other_size)
-{
-	return size == other_size && memcmp(topic, other, size) == 0;
-}
-
-static bool is_for_board_with_pupils(const unsigned char *topic, size_t size)
-{
-	return is_topic(topic, size, GZ_BOARD_PUPILS_TOPIC, GZ_BOARD_PUPILS_TOPIC_SIZE);
-}
-
 /* Whether this is the subscription of a reader of the board. */
 static bool is_for_board(const unsigned char *topic, size_t size)
 {
-	return is_topic(topic, size, GZ_BOARD_TOPIC, GZ_BOARD_TOPIC_SIZE) ||
-	       is_for_board_with_pupils(topic, size);
+	return size >= GZ_BOARD_TOPIC_SIZE &&
+	       memcmp(topic, GZ_BOARD_TOPIC, GZ_BOARD_TOPIC_SIZE) == 0;
+}
+
+/* Whether one of the two begins with the other. */
+static bool begin_alike(const unsigned char *topic, size_t size, const char *other)
+{
+	size_t length = strlen(other);
+	return memcmp(topic, other, size < length ? size : length) == 0;
 }
 
 /* Whether the subscription includes messages about a pupil: it is the beginning of their topic. */
 static bool takes_pupils(const unsigned char *topic, size_t size)
 {
-	return is_for_board_with_pupils(topic, size) ||
-	       (size < sizeof GZ_TOPIC_PUPIL_RIGHT &&
-		memcmp(topic, GZ_TOPIC_PUPIL_RIGHT, size) == 0) ||
-	       (size < sizeof GZ_TOPIC_PUPIL_LEFT && memcmp(topic, GZ_TOPIC_PUPIL_LEFT, size) == 0);
+	return size < sizeof GZ_TOPIC_PUPIL_RIGHT &&
+	       (begin_alike(topic, size, GZ_TOPIC_PUPIL_RIGHT) ||
+		begin_alike(topic, size, GZ_TOPIC_PUPIL_LEFT));
+}
+
+_Static_assert(sizeof GZ_TOPIC_PUPIL_RIGHT == sizeof GZ_TOPIC_PUPIL_LEFT, "of one length");
+
+/* Count a subscription that begins, or one that ends. */
+static void count_topic(struct gz_readers *readers, struct reader *reader,
+			const unsigned char *topic, size_t size, bool begins)
+{
+	const uint32_t step = begins ? 1 : UINT32_MAX; /* one less, modulo 2^32 */
+	struct gz_readers_sums *sums = &readers->sums;
+	sums->subscriptions += step;
+	sums->topics_size += step * (uint32_t)(GZ_READER_TOPIC_EXTRA + size);
+	reader->count = (uint16_t)(reader->count + step);
+	if (is_for_board(topic, size)) {
+		sums->boards += begins && reader->boards == 0 ? 1 : 0;
+		reader->boards = (uint16_t)(reader->boards + step);
+		sums->boards -= reader->boards == 0 ? 1 : 0;
+		topic += GZ_BOARD_TOPIC_SIZE;
+		size -= GZ_BOARD_TOPIC_SIZE;
+	} else {
+		sums->remote += step;
+	}
+	sums->pupils += takes_pupils(topic, size) ? step : 0;
+	sums->surfaces += begin_alike(topic, size, GZ_TOPIC_SURFACES) ? step : 0;
 }
 
 static void add_topic(struct gz_readers *readers, struct reader *reader, const void *topic,
@@ -91,25 +112,16 @@ static void add_topic(struct gz_readers *readers, struct reader *reader, const v
 	place[1] = (unsigned char)(size >> 8);
 	memcpy(place + GZ_READER_TOPIC_EXTRA, topic, size);
 	reader->used = (uint16_t)(reader->used + GZ_READER_TOPIC_EXTRA + size);
-	reader->count++;
-	readers->sums.subscriptions++;
-	readers->sums.pupils += takes_pupils(topic, size);
-	readers->sums.boards += is_for_board(topic, size);
-	readers->sums.topics_size += (uint32_t)(GZ_READER_TOPIC_EXTRA + size);
+	count_topic(readers, reader, topic, size, true);
 }
 
 static void remove_topic(struct gz_readers *readers, struct reader *reader, size_t at)
 {
 	size_t size = topic_size_at(reader, at);
 	size_t whole = GZ_READER_TOPIC_EXTRA + size;
-	const unsigned char *topic = reader->topics + at + GZ_READER_TOPIC_EXTRA;
-	readers->sums.subscriptions--;
-	readers->sums.pupils -= takes_pupils(topic, size);
-	readers->sums.boards -= is_for_board(topic, size);
-	readers->sums.topics_size -= (uint32_t)whole;
+	count_topic(readers, reader, reader->topics + at + GZ_READER_TOPIC_EXTRA, size, false);
 	memmove(reader->topics + at, reader->topics + at + whole, reader->used - at - whole);
 	reader->used = (uint16_t)(reader->used - whole);
-	reader->count--;
 }
 
 static void forget_reader(struct gz_readers *readers, struct reader *reader)

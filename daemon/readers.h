@@ -35,7 +35,9 @@ struct gz_readers;
 struct gz_readers_sums {
 	uint32_t subscriptions; /**< each topic of each reader */
 	uint32_t pupils;        /**< those of them that include pupil messages */
-	uint32_t boards;        /**< those of them of readers of the board (board.h) */
+	uint32_t surfaces;      /**< those of them that include messages about surfaces */
+	uint32_t remote;        /**< those of them of readers that do not read the board */
+	uint32_t boards;        /**< readers of the board (board.h) */
 	uint32_t topics_size;   /**< bytes, each topic with GZ_READER_TOPIC_EXTRA */
 };
 

@@ -252,8 +252,11 @@ static void record_sample(struct gz_service *service, const struct gz_sample *sa
 
 static void serve_sample(struct gz_service *service, const struct gz_sample *sample)
 {
-	gz_message_maker_step(&service->maker, sample, gz_clock_now_ns(), &service->batch);
-	gz_publisher_send(service->parts.publisher, &service->batch);
+	struct gz_publisher *publisher = service->parts.publisher;
+	service->maker.without_surfaces = !gz_publisher_wants_surfaces(publisher);
+	gz_message_maker_step(&service->maker, sample, service->tracker.arrival_ns,
+			      &service->batch);
+	gz_publisher_send(publisher, &service->batch);
 	gz_lsl_outlet_step(service->parts.lsl, &service->batch.step);
 	service->rejected[service->batch.step.rejection]++;
 	record_sample(service, sample);
@@ -570,8 +573,9 @@ static void follow_tracker(struct gz_service *service, enum gz_tracker_state bef
 static void ask_viewers(struct gz_service *service, struct gz_sample *sample)
 {
 	if (!service->tracker.info.recorded)
-		sample->still_scene = service->parts.config->viewers_still_scene &&
-				      gz_viewer_scenes_still(&service->scenes, gz_clock_now_ns());
+		sample->still_scene =
+			service->parts.config->viewers_still_scene &&
+			gz_viewer_scenes_still(&service->scenes, service->tracker.arrival_ns);
 	service->still_scene = sample->still_scene;
 }
 

@@ -248,12 +248,13 @@ static void check_for_silence(struct gz_tracker *tracker)
 enum gz_result gz_tracker_read(struct gz_tracker *tracker, int timeout_ms,
 			       struct gz_sample *out_sample)
 {
-	int64_t deadline_ns = gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS;
+	enum gz_result result = GZ_OK;
 	if (tracker->state == GZ_TRACKER_ENDED) {
-		gz_clock_sleep_until_ns(deadline_ns);
+		gz_clock_sleep_until_ns(gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS);
 		return GZ_ERR_TIMEOUT;
 	}
-	enum gz_result result = make_device_ready(tracker, deadline_ns);
+	if (!tracker->started)
+		result = make_device_ready(tracker, gz_clock_now_ns() + timeout_ms * GZ_NS_PER_MS);
 	if (result != GZ_OK)
 		return result;
 	result = gz_device_read(tracker->device, timeout_ms, out_sample);

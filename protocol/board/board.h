@@ -19,7 +19,7 @@
 #include "base/result.h"
 
 /** The first bytes of a board; the last one is the version of the layout. */
-#define GZ_BOARD_MAGIC "GZBOARD\1"
+#define GZ_BOARD_MAGIC "GZBOARD\2"
 
 /** Where the messages begin, bytes. The header lies before them. */
 #define GZ_BOARD_HEADER_SIZE 4096
@@ -38,20 +38,16 @@
 #define GZ_BOARD_BODY_MAX  24576
 
 /*
- * The subscriptions by which the daemon knows the readers of its board. No message has such a
- * topic, because the daemon accepts no topic with a NUL.
+ * The subscriptions by which the daemon knows the readers of its board and what they want. No
+ * message has such a topic, because the daemon accepts no topic with a NUL.
  */
 
-/** The topic, with its first byte, to which a reader of the stream subscribes in place of its own
- * topics while it reads the board. */
-#define GZ_BOARD_TOPIC "\0board"
+/** A reader subscribes to this and one of its topics, in place of each topic, while it reads the
+ * board. */
+#define GZ_BOARD_TOPIC "\0board:"
 
-/** The same, for a reader of pupil messages too. */
-#define GZ_BOARD_PUPILS_TOPIC "\0board.pupils"
-
-/** The lengths of these topics. */
-#define GZ_BOARD_TOPIC_SIZE        (sizeof GZ_BOARD_TOPIC - 1)
-#define GZ_BOARD_PUPILS_TOPIC_SIZE (sizeof GZ_BOARD_PUPILS_TOPIC - 1)
+/** Its length, with the first byte. */
+#define GZ_BOARD_TOPIC_SIZE (sizeof GZ_BOARD_TOPIC - 1)
 
 /*
  * Writing.

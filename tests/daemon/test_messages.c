@@ -80,6 +80,33 @@ static void messages_of_a_sample_are_gaze_then_surfaces(void **state)
 	assert_int_equal(gaze.seq, samples[0].seq);
 }
 
+/* What nobody wants costs nothing, and the other messages stay the same bytes. */
+static void messages_without_surfaces_are_the_others(void **state)
+{
+	(void)state;
+	static struct gz_message_maker whole, part;
+	static struct gz_outgoing_batch a, b;
+	make(&whole);
+	make(&part);
+	part.without_surfaces = true;
+	for (int i = 0; i < 1000; i++) {
+		gz_message_maker_step(&whole, &samples[i], i, &a);
+		gz_message_maker_step(&part, &samples[i], i, &b);
+		assert_int_equal(a.count, b.count + whole.surface_count);
+		size_t k = 0;
+		for (size_t j = 0; j < a.count; j++) {
+			if (strncmp(a.item[j].topic, "surfaces.", 9) == 0)
+				continue;
+			assert_string_equal(a.item[j].topic, b.item[k].topic);
+			assert_int_equal(a.item[j].body.size, b.item[k].body.size);
+			assert_memory_equal(a.item[j].body.bytes, b.item[k].body.bytes,
+					    a.item[j].body.size);
+			k++;
+		}
+		assert_int_equal(k, b.count);
+	}
+}
+
 /* Note the label that a message makes certain; no sample may get a second one. */
 static void note_label(const struct gz_gaze *gaze, bool labelled[SAMPLES])
 {
@@ -207,6 +234,7 @@ TEST_SUITE(messages)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(messages_of_a_sample_are_gaze_then_surfaces),
+		cmocka_unit_test(messages_without_surfaces_are_the_others),
 		cmocka_unit_test(messages_give_every_sample_one_certain_label),
 		cmocka_unit_test(messages_of_the_end_are_event_final),
 		cmocka_unit_test(messages_of_twenty_seconds_hold_every_kind),

@@ -60,24 +60,56 @@ static void readers_topics_are_counted_once_each(void **state)
 	assert_sums(4, 1, 2 * 7 + 2 + 9);
 }
 
+static void assert_board_sums(uint32_t boards, uint32_t remote, uint32_t pupils)
+{
+	struct gz_readers_sums sums = gz_readers_sums(readers);
+	assert_int_equal(sums.boards, boards);
+	assert_int_equal(sums.remote, remote);
+	assert_int_equal(sums.pupils, pupils);
+}
+
 static void readers_of_the_board_are_counted(void **state)
 {
 	(void)state;
-	const char *plain = GZ_BOARD_TOPIC, *pupils = GZ_BOARD_PUPILS_TOPIC;
-	assert_int_equal(gz_readers_subscribe(readers, 5, 1, plain, GZ_BOARD_TOPIC_SIZE), GZ_OK);
-	assert_int_equal(gz_readers_subscribe(readers, 6, 2, pupils, GZ_BOARD_PUPILS_TOPIC_SIZE),
-			 GZ_OK);
-	assert_int_equal(gz_readers_subscribe(readers, 7, 3, plain, GZ_BOARD_TOPIC_SIZE - 1),
-			 GZ_OK);
+	static const char gaze[] = GZ_BOARD_TOPIC "gaze.", pupil[] = GZ_BOARD_TOPIC "pupil.0",
+			  shorter[] = "\0board", all[] = GZ_BOARD_TOPIC;
+	assert_int_equal(gz_readers_subscribe(readers, 5, 1, gaze, sizeof gaze - 1), GZ_OK);
+	assert_int_equal(gz_readers_subscribe(readers, 6, 2, pupil, sizeof pupil - 1), GZ_OK);
+	assert_int_equal(gz_readers_subscribe(readers, 6, 2, gaze, sizeof gaze - 1), GZ_OK);
+	assert_int_equal(gz_readers_subscribe(readers, 7, 3, shorter, sizeof shorter - 1), GZ_OK);
 	assert_int_equal(subscribe(7, 3, ""), GZ_OK);
-	assert_int_equal(gz_readers_sums(readers).subscriptions, 4);
-	assert_int_equal(gz_readers_sums(readers).boards, 2);
-	assert_int_equal(gz_readers_sums(readers).pupils, 2);
-	gz_readers_unsubscribe(readers, 6, 2, pupils, GZ_BOARD_PUPILS_TOPIC_SIZE);
-	assert_int_equal(gz_readers_sums(readers).boards, 1);
-	assert_int_equal(gz_readers_sums(readers).pupils, 1);
-	gz_readers_unsubscribe(readers, 5, 1, plain, GZ_BOARD_TOPIC_SIZE);
-	assert_int_equal(gz_readers_sums(readers).boards, 0);
+	assert_board_sums(2, 2, 2);
+	assert_int_equal(gz_readers_sums(readers).subscriptions, 5);
+	gz_readers_unsubscribe(readers, 6, 2, gaze, sizeof gaze - 1);
+	assert_board_sums(2, 2, 2);
+	gz_readers_unsubscribe(readers, 6, 2, pupil, sizeof pupil - 1);
+	assert_board_sums(1, 2, 1);
+	gz_readers_unsubscribe(readers, 5, 1, gaze, sizeof gaze - 1);
+	assert_board_sums(0, 2, 1);
+	assert_int_equal(gz_readers_subscribe(readers, 5, 1, all, sizeof all - 1), GZ_OK);
+	assert_board_sums(1, 2, 2);
+	assert_int_equal(subscribe(5, 9, "status"), GZ_OK);
+	assert_board_sums(0, 3, 1);
+}
+
+/* A subscription to the beginning of the topic, or to one surface. */
+static void readers_of_surfaces_are_counted(void **state)
+{
+	(void)state;
+	static const char board[] = GZ_BOARD_TOPIC "surfaces.screen";
+	static const char *const topics[] = { "", "surf", "surfaces.", "surfaces.screen" };
+	assert_int_equal(subscribe(5, 1, "surfaces_"), GZ_OK);
+	assert_int_equal(subscribe(5, 1, "gaze."), GZ_OK);
+	assert_int_equal(gz_readers_sums(readers).surfaces, 0);
+	for (uint32_t i = 0; i < 4; i++) {
+		assert_int_equal(subscribe(6, 2, topics[i]), GZ_OK);
+		assert_int_equal(gz_readers_sums(readers).surfaces, i + 1);
+	}
+	assert_int_equal(gz_readers_subscribe(readers, 7, 3, board, sizeof board - 1), GZ_OK);
+	assert_int_equal(gz_readers_sums(readers).surfaces, 5);
+	gz_readers_unsubscribe(readers, 7, 3, board, sizeof board - 1);
+	gz_readers_unsubscribe(readers, 6, 2, "surf", 4);
+	assert_int_equal(gz_readers_sums(readers).surfaces, 3);
 }
 
 static void readers_beyond_their_number_are_refused_once(void **state)
@@ -153,6 +185,7 @@ TEST_SUITE(readers)
 	const struct CMUnitTest tests[] = {
 		TEST(readers_topics_are_counted_once_each),
 		TEST(readers_of_the_board_are_counted),
+		TEST(readers_of_surfaces_are_counted),
 		TEST(readers_beyond_their_number_are_refused_once),
 		TEST(readers_beyond_their_room_are_refused),
 		TEST(readers_beyond_the_number_of_all_are_refused),

@@ -300,7 +300,7 @@ static void memory_that_is_no_board_is_refused(void **state)
 	const size_t size = GZ_BOARD_SIZE_MIN, whole = GZ_BOARD_HEADER_SIZE + size;
 	const int sealed = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE;
 	struct gz_board_reader *stranger = NULL;
-	assert_no_board("GZBOARD\2", size, whole, sealed); /* another version */
+	assert_no_board("GZBOARD\3", size, whole, sealed); /* another version */
 	assert_no_board("somewhat", size, whole, sealed);
 	assert_no_board(GZ_BOARD_MAGIC, 2 * size, whole, sealed);
 	assert_no_board(GZ_BOARD_MAGIC, size, whole - 8, sealed); /* cut short */
