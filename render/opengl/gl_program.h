@@ -14,7 +14,7 @@
 enum gz_gl_stage { GZ_GL_VERTEX, GZ_GL_FRAGMENT, GZ_GL_COMPUTE };
 
 /** Most files of one shader. */
-#define GZ_GL_PARTS_MAX 12
+#define GZ_GL_PARTS_MAX 16
 
 /** One shader's text. */
 struct gz_gl_shader {

@@ -48,7 +48,7 @@ struct gz_surface_caster {
 	bool tree_current;
 	int source; /* enum gz_surface_source: what the tree was made for */
 	struct field field;
-	struct gz_surface_cube cube;
+	struct gz_cube_pictures cube;
 	struct gz_lattices lattices[PLANE_COUNT];
 	char description[64];
 };
@@ -420,8 +420,8 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	if (result == GZ_OK)
 		result = prepare_surfaces(caster, &shot->rays->surface, &prepare_ms);
 	if (result == GZ_OK)
-		result = gz_surface_cube_prepare(&caster->cube, &shot->rays->environment,
-						 caster->log, &prepare_ms);
+		result = gz_cube_pictures_prepare(&caster->cube, &shot->rays->environment,
+						  caster->log, &prepare_ms);
 	if (result != GZ_OK)
 		return result;
 	const int64_t prepared_ns = gz_clock_now_ns();
@@ -461,7 +461,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 	gz_surface_tree_close(&self->tree);
 	gz_surface_meshes_free(&self->meshes);
 	gz_macrocells_free(&self->field.cells);
-	gz_surface_cube_free(&self->cube);
+	gz_cube_pictures_free(&self->cube);
 	free(self->listed);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);

@@ -19,10 +19,10 @@
 #ifndef GZ_RENDER_SURFACE_CPU_SURFACE_GLASS_H
 #define GZ_RENDER_SURFACE_CPU_SURFACE_GLASS_H
 
+#include "render/raycast/cpu/simd_surroundings.h"
 #include "render/surface/cpu/surface_cast.h"
 #include "render/surface/cpu/surface_field.h"
 #include "render/surface/cpu/surface_packet.h"
-#include "render/surface/cpu/surface_surroundings.h"
 
 /* Rays on their way through glass. */
 struct glass {
@@ -36,7 +36,7 @@ SIMD void gather_surroundings(const struct gz_surface_cast *cast, const vf origi
 			      const vf direction[3], vf share, struct lanes lanes,
 			      struct glass *glass)
 {
-	const struct rgb seen = see_surroundings(cast, origin, direction);
+	const struct rgb seen = see_surroundings(&cast->frame.around, origin, direction);
 	for (int i = 0; i < 3; i++) {
 		float *light = glass->light[i] + lanes.first;
 		const vf weight = vf_load(glass->weight[i] + lanes.first) * share;

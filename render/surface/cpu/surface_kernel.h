@@ -175,7 +175,8 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 	vi behind = vi_set((int32_t)cast->frame.background);
 	if (cast->frame.around.kind != GZ_SURROUNDINGS_NONE) {
 		const struct ways way = load_ways(&packet->hit.ray, first);
-		const struct rgb seen = see_surroundings(cast, way.origin, way.direction);
+		const struct rgb seen =
+			see_surroundings(&cast->frame.around, way.origin, way.direction);
 		behind = pack_rgb(&seen);
 	}
 	vi_store(hits->pixels + first, vi_select(met, pixel, behind));

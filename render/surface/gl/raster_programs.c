@@ -28,18 +28,11 @@ _Static_assert(BLOCK == GZ_GL_BLOCK_TECHNIQUE, "the block is bound there");
  * tests' surfaces and on bone of a CT. */
 #define SHADOW_LIFT 3.0
 
-/* Numbers of enum gz_surroundings, pasted too. */
-#define SKY  1
-#define CUBE 2
-
-_Static_assert(SKY == GZ_SURROUNDINGS_SKY && CUBE == GZ_SURROUNDINGS_CUBE, "kinds are these");
-
 #define TEXT_OF(number)      #number
 #define DEFINE(name, number) "#define " name " " TEXT_OF(number) "\n"
 
 static const char numbers[] = DEFINE("BLOCK", BLOCK) DEFINE("SHADOW_LIFT", SHADOW_LIFT)
-	DEFINE("UNIT_SHADOW", GZ_RASTER_UNIT_SHADOW) DEFINE("UNIT_CUBE", GZ_RASTER_UNIT_CUBE)
-		DEFINE("SURROUNDINGS_SKY", SKY) DEFINE("SURROUNDINGS_CUBE", CUBE);
+	DEFINE("UNIT_SHADOW", GZ_RASTER_UNIT_SHADOW) DEFINE("UNIT_CUBE", GZ_RASTER_UNIT_CUBE);
 
 static const char remedy[] = "use --backend cpu";
 
@@ -47,21 +40,6 @@ static void copy3(const float from[3], float last, float out[4])
 {
 	memcpy(out, from, 3 * sizeof *from);
 	out[3] = last;
-}
-
-static void fill_surroundings_block(const struct gz_surface_environment *around,
-				    struct gz_raster_block *block)
-{
-	for (int axis = 0; axis < 3; axis++)
-		copy3(around->axes[axis], 0, block->axes[axis]);
-	block->ground[0] = around->floor_mm;
-	block->ground[1] = around->tiles_per_mm;
-	block->ground[2] = around->fade_per_mm;
-	block->cube[0] = around->edge;
-	copy3(around->horizon, 0, block->horizon);
-	copy3(around->zenith, 0, block->zenith);
-	copy3(around->bright, 0, block->bright);
-	copy3(around->dark, 0, block->dark);
 }
 
 void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_raster_view *view,
@@ -76,8 +54,7 @@ void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_
 		.glass = { frame->refractive_index, frame->least_reflection },
 		.shadow_texel = { shadow->texel_mm, 1.0F / (float)edge,
 				  shadow->texel_mm / shadow->depth_mm },
-		.are = { (int32_t)frame->around.kind, frame->around.floor, frame->bounces > 0,
-			 frame->shadows },
+		.are = { frame->bounces > 0, frame->shadows },
 	};
 	copy3(frame->origin00, 0, out_block->origin00);
 	copy3(frame->origin_dx, 0, out_block->origin_dx);
@@ -90,7 +67,7 @@ void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_
 	copy3(frame->clip_greatest, 0, out_block->clip_greatest);
 	copy3(light->towards, 0, out_block->light_towards);
 	memcpy(out_block->shadow_rows, shadow->rows, sizeof shadow->rows);
-	fill_surroundings_block(&frame->around, out_block);
+	gz_gl_surroundings_fill(&frame->around, &out_block->around);
 }
 
 /* What each program is made of. */
@@ -110,15 +87,17 @@ void gz_raster_shaders(enum gz_raster_program program, struct gz_gl_shader out_s
 	out_shaders[0] = (struct gz_gl_shader) {
 		.stage = GZ_GL_VERTEX,
 		.name = texts[program].vertex_name,
-		.parts = { numbers, gz_glsl_surface_block_glsl, texts[program].vertex },
+		.parts = { numbers, gz_gl_surroundings_numbers, gz_glsl_light_constants_h,
+			   gz_glsl_surroundings_glsl, gz_glsl_surface_block_glsl,
+			   texts[program].vertex },
 		.with_430 = true,
 	};
 	out_shaders[1] = (struct gz_gl_shader) {
 		.stage = GZ_GL_FRAGMENT,
 		.name = texts[program].fragment_name,
-		.parts = { numbers, gz_glsl_light_constants_h, gz_glsl_shine_glsl,
-			   gz_glsl_surface_block_glsl, gz_glsl_surroundings_glsl,
-			   texts[program].fragment },
+		.parts = { numbers, gz_gl_surroundings_numbers, gz_glsl_light_constants_h,
+			   gz_glsl_shine_glsl, gz_glsl_surroundings_glsl,
+			   gz_glsl_surface_block_glsl, texts[program].fragment },
 		.with_430 = true,
 	};
 }

@@ -9,6 +9,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/light/gl/gl_surroundings.h"
 #include "render/opengl/gl_program.h"
 #include "render/surface/gl/raster_view.h"
 #include "render/surface/shared/surface_frame.h"
@@ -23,13 +24,10 @@ struct gz_raster_block {
 	float light_terms[4];
 	float scale[4];
 	float glass[4];
-	float axes[3][4];
-	float ground[4];
-	float horizon[4], zenith[4], bright[4], dark[4];
 	float shadow_rows[3][4];
 	float shadow_texel[4];
 	int32_t are[4];
-	int32_t cube[4];
+	struct gz_gl_surroundings around;
 };
 
 /** Fill the block of a frame. @param edge  of the shadow map, texels */

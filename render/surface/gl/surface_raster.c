@@ -8,8 +8,8 @@
 #include "base/clock.h"
 #include "base/workers.h"
 #include "render/layers/gl_layers.h"
+#include "render/light/gl/gl_cube.h"
 #include "render/opengl/gl_target.h"
-#include "render/surface/gl/raster_cube.h"
 #include "render/surface/gl/raster_meshes.h"
 #include "render/surface/gl/raster_programs.h"
 #include "render/surface/gl/raster_shadow.h"
@@ -34,8 +34,8 @@ struct gz_surface_raster {
 	struct gz_raster_meshes meshes;
 	struct gz_raster_programs programs;
 	struct gz_raster_shadow_map shadow_map;
-	struct gz_surface_cube pictures; /* of the surroundings, if they are wanted */
-	struct gz_raster_cube cube;
+	struct gz_cube_pictures pictures; /* of the surroundings, if they are wanted */
+	struct gz_gl_cube cube;
 	struct gz_gl_layers layers;
 	struct gz_gl_target targets[GZ_PLAN_RECTANGLES_MAX];
 	struct gz_gl_buffer block;
@@ -69,7 +69,7 @@ static void delete_raster_objects(struct gz_surface_raster *raster)
 	gz_raster_meshes_free(&raster->meshes);
 	gz_raster_programs_free(&raster->programs);
 	gz_raster_shadow_free(&raster->shadow_map);
-	gz_raster_cube_free(&raster->cube);
+	gz_gl_cube_free(&raster->cube);
 	gz_gl_layers_free(&raster->layers);
 	for (int i = 0; i < GZ_PLAN_RECTANGLES_MAX; i++)
 		gz_gl_target_free(&raster->targets[i]);
@@ -92,7 +92,7 @@ void gz_surface_raster_destroy(struct gz_surface_raster **raster)
 	}
 	gz_gl_device_destroy(&self->device);
 	gz_surface_meshes_free(&self->surfaces);
-	gz_surface_cube_free(&self->pictures);
+	gz_cube_pictures_free(&self->pictures);
 	gz_workers_destroy(&self->workers);
 	free(self);
 	*raster = NULL;
@@ -227,7 +227,8 @@ static enum gz_result prepare_frame(struct rastering *rastering, const struct gz
 	glBindBufferBase(GL_UNIFORM_BUFFER, GZ_GL_BLOCK_TECHNIQUE, raster->block.name);
 	glBindBuffer(GL_UNIFORM_BUFFER, 0);
 	const enum gz_result result =
-		gz_raster_cube_bind(&raster->cube, &raster->device, &raster->pictures, raster->log);
+		gz_gl_cube_bind(&raster->cube, &raster->device, &raster->pictures,
+				GZ_RASTER_UNIT_CUBE, raster->log);
 	return result == GZ_OK && casts_shadows(rastering)
 		       ? gz_raster_shadow_reserve(&raster->shadow_map, &raster->device, edge,
 						  raster->log)
@@ -392,8 +393,8 @@ enum gz_result gz_surface_raster_draw(struct gz_surface_raster *raster,
 		return result;
 	result = prepare_meshes(&rastering);
 	if (result == GZ_OK)
-		result = gz_surface_cube_prepare(&raster->pictures, &shot->rays->environment,
-						 raster->log, &rastering.prepare_ms);
+		result = gz_cube_pictures_prepare(&raster->pictures, &shot->rays->environment,
+						  raster->log, &rastering.prepare_ms);
 	if (result == GZ_OK)
 		result = prepare_layers(&rastering);
 	if (result == GZ_OK)

@@ -77,38 +77,18 @@ static void fill_glass(const struct gz_surface_meshes *meshes, const struct gz_s
 static void fill_surroundings(const struct gz_surface_meshes *meshes, const struct gz_cube *cube,
 			      const struct gz_ray_params *rays, struct gz_surface_frame *frame)
 {
-	const struct gz_environment *environment = &rays->environment;
-	struct gz_surface_environment *around = &frame->around;
-	double axes[3][3], half[3], lowest = 0, overhead = 0;
-	const bool pictures = environment->kind == GZ_SURROUNDINGS_CUBE;
-	around->kind = pictures && !cube->edge ? GZ_SURROUNDINGS_NONE
-					       : (enum gz_surroundings)environment->kind;
-	around->texels = cube->texels;
-	around->edge = cube->edge;
-	around->floor = environment->floor;
-	if (pictures)
-		gz_cube_axes(environment->up, axes);
-	else
-		gz_environment_axes(environment, axes);
+	double half[3];
 	gz_volume_half_extent(meshes->items[0].object.volume, half);
-	for (int axis = 0; axis < 3; axis++) {
-		lowest -= fabs(axes[0][axis]) * half[axis] * meshes->world_mm;
-		overhead += axes[0][axis] * (double)frame->light.towards[axis];
-		for (int i = 0; i < 3; i++)
-			around->axes[i][axis] = (float)axes[i][axis];
-	}
-	const double lamp = rays->light.ambient + rays->light.diffuse * fmax(overhead, 0);
-	around->floor_mm = (float)lowest;
-	around->tiles_per_mm = (float)(1 / (environment->tile * meshes->world_mm));
-	around->fade_per_mm = (float)(1 / ((double)GZ_FLOOR_HALF * meshes->world_mm));
-	for (int i = 0; i < 3; i++) {
-		around->horizon[i] =
-			(float)(around->kind == GZ_SURROUNDINGS_SKY ? environment->horizon[i]
-								    : rays->background[i]);
-		around->zenith[i] = (float)environment->zenith[i];
-		around->bright[i] = (float)(environment->bright[i] * lamp);
-		around->dark[i] = (float)(environment->dark[i] * lamp);
-	}
+	const struct gz_surroundings_request request = {
+		.environment = &rays->environment,
+		.cube = cube,
+		.light = &rays->light,
+		.background = rays->background,
+		.half = half,
+		.towards = frame->light.towards,
+		.lengths_a_unit = meshes->world_mm,
+	};
+	gz_seen_surroundings_make(&request, &frame->around);
 }
 
 void gz_surface_colour(const struct gz_surface_item *item, const struct gz_surface_look *look,
@@ -120,7 +100,7 @@ void gz_surface_colour(const struct gz_surface_item *item, const struct gz_surfa
 }
 
 struct gz_surface_frame gz_surface_frame_make(const struct gz_surface_meshes *meshes,
-					      const struct gz_surface_cube *cube,
+					      const struct gz_cube_pictures *cube,
 					      const struct gz_ray_params *rays,
 					      const struct gz_ray_frame *camera)
 {

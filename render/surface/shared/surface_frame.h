@@ -8,26 +8,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "render/light/cube_pictures.h"
+#include "render/light/surroundings.h"
 #include "render/picture/camera.h"
 #include "render/raycast/shared/lighting.h"
 #include "render/raycast/shared/ray_params.h"
-#include "render/surface/shared/surface_cube.h"
 #include "render/surface/shared/surface_meshes.h"
-
-/** The surroundings: struct gz_environment in numbers of single precision. Places and lengths are
- *  in mm. */
-struct gz_surface_environment {
-	enum gz_surroundings kind; /**< NONE: everything is the horizon's colour */
-	const uint32_t *texels;    /**< CUBE: as in struct gz_cube; borrowed */
-	int edge;
-	bool floor; /**< SKY: there is one */
-	/** Unit vectors. SKY: up, and two along the floor. CUBE: right, front and up. */
-	float axes[3][3];
-	float floor_mm; /**< height of the floor */
-	float tiles_per_mm, fade_per_mm;
-	float horizon[3], zenith[3];
-	float bright[3], dark[3]; /**< of tiles, lit */
-};
 
 /** The frame. Lengths and places are in mm, in the frame of struct gz_mesh. */
 struct gz_surface_frame {
@@ -38,9 +24,9 @@ struct gz_surface_frame {
 	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
 	struct gz_cast_light light;            /**< without occlusion */
 	bool shadows;
-	float lift;          /**< how far above a surface its shadow rays begin */
-	uint32_t background; /**< as a pixel */
-	struct gz_surface_environment around;
+	float lift;                         /**< how far above a surface its shadow rays begin */
+	uint32_t background;                /**< as a pixel */
+	struct gz_seen_surroundings around; /**< lengths in mm */
 	int bounces;              /**< surfaces of glass that a ray meets at most; 0: no glass */
 	float refractive_index;   /**< of glass */
 	float least_reflection;   /**< share that glass reflects along its normal */
@@ -55,7 +41,7 @@ void gz_surface_colour(const struct gz_surface_item *item, const struct gz_surfa
 /** Make the frame of a picture. @param meshes  shows something  @param cube  prepared  @param
  *  camera  the picture's rays, world units */
 struct gz_surface_frame gz_surface_frame_make(const struct gz_surface_meshes *meshes,
-					      const struct gz_surface_cube *cube,
+					      const struct gz_cube_pictures *cube,
 					      const struct gz_ray_params *rays,
 					      const struct gz_ray_frame *camera);
 

@@ -38,7 +38,7 @@ vec3 see_through(vec3 facing, vec3 direction)
 	float share = fma((1.0 - glass.y) * power2 * power2, outside, glass.y);
 	vec3 reflected = fma(vec3(2.0 * cosine), facing, direction);
 	vec3 refracted = fma(vec3(fma(ratio, cosine, -beyond)), facing, ratio * direction);
-	return mix(see_surroundings(place, refracted), see_surroundings(place, reflected), share);
+	return mix(see_surroundings(around, place, refracted), see_surroundings(around, place, reflected), share);
 }
 
 void main()
@@ -51,14 +51,14 @@ void main()
 	vec3 facing = dot(unit, direction) > 0.0 ? -unit : unit;
 	object = id;
 	depth = floatBitsToUint(dot(place - origin_of(pixel), direction) * scale.x);
-	if (are.z != 0) {
+	if (are.x != 0) {
 		colour = vec4(see_through(facing, direction), 1.0);
 		return;
 	}
 	vec3 between = light_towards.xyz - direction;
 	vec3 halfway = between * inversesqrt(dot(between, between) + 1e-12); // 0 where they are opposite
 	vec2 light = shine(unit, -direction, halfway, light_towards.xyz, light_terms);
-	if (are.w != 0 && light.x > light_terms.x)
+	if (are.y != 0 && light.x > light_terms.x)
 		light = mix(vec2(light_terms.x, 0.0), light, light_share(facing, flat_normal));
 	colour = vec4(fma(own, vec3(light.x), vec3(light.y)), 1.0);
 }

@@ -10,11 +10,20 @@ layout(std140, binding = BLOCK) uniform Surface
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
 	vec4 scale;         // world units of a mm
 	vec4 glass;         // refractive index; share that is reflected along the normal
-	vec4 axes[3];       // of a sky: up, and two along the floor; of a cube: right, front and up
-	vec4 ground;        // height of the floor; tiles of a mm; fading of a mm
-	vec4 horizon, zenith, bright, dark; // colours; tiles are lit
 	vec4 shadow_rows[3];                // struct gz_raster_shadow
 	vec4 shadow_texel;                  // edge in mm; as a share of the map's; the same length as depth
-	ivec4 are;                          // surroundings; whether there are a floor, glass, shadows
-	ivec4 cube;                         // edge of a face, texels
+	ivec4 are;                          // whether there are glass, shadows
+	Surroundings around;
 };
+
+// The ray of a pixel.
+vec3 origin_of(vec2 pixel)
+{
+	return fma(vec3(pixel.y), origin_dy.xyz, fma(vec3(pixel.x), origin_dx.xyz, origin00.xyz));
+}
+
+vec3 direction_of(vec2 pixel)
+{
+	return normalize(
+		fma(vec3(pixel.y), direction_dy.xyz, fma(vec3(pixel.x), direction_dx.xyz, direction00.xyz)));
+}

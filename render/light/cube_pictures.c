@@ -1,12 +1,12 @@
-#include "render/surface/shared/surface_cube.h"
+#include "render/light/cube_pictures.h"
 
 #include <string.h>
 
 #include "base/clock.h"
 
-enum gz_result gz_surface_cube_prepare(struct gz_surface_cube *cube,
-				       const struct gz_environment *environment,
-				       const struct gz_log *log, double *prepare_ms)
+enum gz_result gz_cube_pictures_prepare(struct gz_cube_pictures *cube,
+					const struct gz_environment *environment,
+					const struct gz_log *log, double *prepare_ms)
 {
 	const bool wanted = environment->kind == GZ_SURROUNDINGS_CUBE && environment->cube_path[0];
 	if (cube->cube.edge && strcmp(environment->cube_path, cube->path) != 0)
@@ -23,8 +23,8 @@ enum gz_result gz_surface_cube_prepare(struct gz_surface_cube *cube,
 	return result;
 }
 
-void gz_surface_cube_free(struct gz_surface_cube *cube)
+void gz_cube_pictures_free(struct gz_cube_pictures *cube)
 {
 	gz_cube_free(&cube->cube);
-	*cube = (struct gz_surface_cube) { 0 };
+	*cube = (struct gz_cube_pictures) { 0 };
 }

@@ -2,8 +2,8 @@
  * @file
  * The six pictures of the surroundings, read when a picture first shows them.
  */
-#ifndef GZ_RENDER_SURFACE_SHARED_SURFACE_CUBE_H
-#define GZ_RENDER_SURFACE_SHARED_SURFACE_CUBE_H
+#ifndef GZ_RENDER_LIGHT_CUBE_PICTURES_H
+#define GZ_RENDER_LIGHT_CUBE_PICTURES_H
 
 #include <stdint.h>
 
@@ -14,7 +14,7 @@
 #include "render/light/environment.h"
 
 /** Zero-initialised is none; keep it from frame to frame. */
-struct gz_surface_cube {
+struct gz_cube_pictures {
 	struct gz_cube cube;
 	char path[GZ_PATH_SIZE]; /**< of its folder */
 	uint64_t serial;         /**< increased whenever pictures are read */
@@ -26,11 +26,11 @@ struct gz_surface_cube {
  * @param[in,out] prepare_ms  the time is added
  * @return what gz_cube_load() returns; logged
  */
-enum gz_result gz_surface_cube_prepare(struct gz_surface_cube *cube,
-				       const struct gz_environment *environment,
-				       const struct gz_log *log, double *prepare_ms);
+enum gz_result gz_cube_pictures_prepare(struct gz_cube_pictures *cube,
+					const struct gz_environment *environment,
+					const struct gz_log *log, double *prepare_ms);
 
 /** Free the pictures and zero the struct. */
-void gz_surface_cube_free(struct gz_surface_cube *cube);
+void gz_cube_pictures_free(struct gz_cube_pictures *cube);
 
 #endif

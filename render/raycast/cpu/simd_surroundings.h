@@ -1,14 +1,13 @@
 /*
- * What rays see of the surroundings: render/light/environment.h and render/light/cube.h have the
- * formulas. A part of the kernel: see surface_kernel.h.
+ * What rays see of the surroundings, for each lane: render/light/environment.h and
+ * render/light/cube.h have the formulas. Include it after the vocabulary of an instruction set, as
+ * simd_light.h.
  */
-#ifndef GZ_RENDER_SURFACE_CPU_SURFACE_SURROUNDINGS_H
-#define GZ_RENDER_SURFACE_CPU_SURFACE_SURROUNDINGS_H
+#ifndef GZ_RENDER_RAYCAST_CPU_SIMD_SURROUNDINGS_H
+#define GZ_RENDER_RAYCAST_CPU_SIMD_SURROUNDINGS_H
 
-#include "render/light/cube.h"
-#include "render/light/environment.h"
+#include "render/light/surroundings.h"
 #include "render/raycast/cpu/simd_light.h"
-#include "render/surface/cpu/surface_cast.h"
 
 struct rgb {
 	vf channel[3];
@@ -22,10 +21,10 @@ SIMD vi pack_rgb(const struct rgb *rgb)
 }
 
 /* The floor, or the sky where the floor is not met. */
-SIMD struct rgb floor_or_sky(const struct gz_surface_environment *around, const vf origin[3],
+SIMD struct rgb floor_or_sky(const struct gz_seen_surroundings *around, const vf origin[3],
 			     const vf direction[3], vf rise, struct rgb sky)
 {
-	vf height = vf_set(-around->floor_mm), tiles = vf_set(0);
+	vf height = vf_set(-around->floor_height), tiles = vf_set(0);
 	for (int axis = 0; axis < 3; axis++)
 		height = vf_fma(origin[axis], vf_set(around->axes[0][axis]), height);
 	const vm meets = vm_and(vf_less(vf_set(0), height), vf_less(rise, vf_set(-GZ_FLOOR_FALL)));
@@ -35,11 +34,11 @@ SIMD struct rgb floor_or_sky(const struct gz_surface_environment *around, const 
 		for (int axis = 0; axis < 3; axis++)
 			place = vf_fma(vf_fma(distance, direction[axis], origin[axis]),
 				       vf_set(around->axes[side][axis]), place);
-		tiles = tiles + vf_floor(place * vf_set(around->tiles_per_mm));
+		tiles = tiles + vf_floor(place * vf_set(around->tiles_per_length));
 	}
 	const vf half = tiles * vf_set(0.5F);
 	const vm odd = vf_less(vf_set(0.25F), half - vf_floor(half));
-	const vf share = exp2_negative(distance * vf_set(-around->fade_per_mm));
+	const vf share = exp2_negative(distance * vf_set(-around->fade_per_length));
 	for (int i = 0; i < 3; i++) {
 		const vf horizon = vf_set(around->horizon[i]);
 		const vf tile = vf_select(odd, vf_set(around->dark[i]), vf_set(around->bright[i]));
@@ -50,15 +49,14 @@ SIMD struct rgb floor_or_sky(const struct gz_surface_environment *around, const 
 }
 
 /* What rays from here see of the sky and its floor. */
-SIMD struct rgb see_sky(const struct gz_surface_cast *cast, const vf origin[3],
+SIMD struct rgb see_sky(const struct gz_seen_surroundings *around, const vf origin[3],
 			const vf direction[3])
 {
-	const struct gz_surface_environment *around = &cast->frame.around;
 	struct rgb seen;
 	vf rise = vf_set(0), cosine = vf_set(0);
 	for (int axis = 0; axis < 3; axis++) {
 		rise = vf_fma(direction[axis], vf_set(around->axes[0][axis]), rise);
-		cosine = vf_fma(direction[axis], vf_set(cast->frame.light.towards[axis]), cosine);
+		cosine = vf_fma(direction[axis], vf_set(around->sun[axis]), cosine);
 	}
 	const vf up = vf_min(vf_max(rise, vf_set(0)), vf_set(1));
 	const vf blue = up * (vf_set(2) - up);
@@ -74,7 +72,7 @@ SIMD struct rgb see_sky(const struct gz_surface_cast *cast, const vf origin[3],
 }
 
 /* A texel of a cube, by its number, channels 0 to 255. */
-SIMD struct rgb load_texel(const struct gz_surface_environment *around, vi index)
+SIMD struct rgb load_texel(const struct gz_seen_surroundings *around, vi index)
 {
 	const vi texel = vi_gather(around->texels, index, 4, vm_all()), byte = vi_set(0xFF);
 	return (struct rgb) { { vf_from_i(vi_and(texel, byte)),
@@ -93,7 +91,7 @@ struct on_cube {
 	vf s, t;
 };
 
-SIMD struct on_cube meet_cube(const struct gz_surface_environment *around, const vf direction[3])
+SIMD struct on_cube meet_cube(const struct gz_seen_surroundings *around, const vf direction[3])
 {
 	vf along[3], size[3];
 	for (int i = 0; i < 3; i++) {
@@ -123,7 +121,7 @@ SIMD struct on_cube meet_cube(const struct gz_surface_environment *around, const
 
 /* What rays see of six pictures: bilinear between the four texels around, which are all there
  * because a face has a rim. */
-SIMD struct rgb see_cube(const struct gz_surface_environment *around, const vf direction[3])
+SIMD struct rgb see_cube(const struct gz_seen_surroundings *around, const vf direction[3])
 {
 	const struct on_cube on = meet_cube(around, direction);
 	const vf half_edge = vf_set(0.5F * (float)around->edge),
@@ -156,18 +154,34 @@ SIMD struct rgb see_cube(const struct gz_surface_environment *around, const vf d
 }
 
 /* What rays from here see of the surroundings. */
-SIMD struct rgb see_surroundings(const struct gz_surface_cast *cast, const vf origin[3],
+SIMD struct rgb see_surroundings(const struct gz_seen_surroundings *around, const vf origin[3],
 				 const vf direction[3])
 {
-	const struct gz_surface_environment *around = &cast->frame.around;
 	struct rgb seen;
 	if (around->kind == GZ_SURROUNDINGS_SKY)
-		return see_sky(cast, origin, direction);
+		return see_sky(around, origin, direction);
 	if (around->kind == GZ_SURROUNDINGS_CUBE)
 		return see_cube(around, direction);
 	for (int i = 0; i < 3; i++)
 		seen.channel[i] = vf_set(around->horizon[i]);
 	return seen;
+}
+
+/* A colour, 0 to 1, with what it mirrors: struct gz_light has the formula. */
+SIMD struct rgb mirror_surroundings(const struct gz_seen_surroundings *around, vf reflection,
+				    const vf place[3], const vf normal[3], const vf to_eye[3],
+				    struct rgb colour)
+{
+	const vf along = dot_lanes(normal, to_eye), one = vf_set(1);
+	const vf outside = one - vf_min(vf_abs(along), one), power2 = outside * outside;
+	const vf share = vf_fma((one - reflection) * power2 * power2, outside, reflection);
+	vf direction[3];
+	for (int axis = 0; axis < 3; axis++)
+		direction[axis] = vf_fma(along + along, normal[axis], vf_set(0) - to_eye[axis]);
+	const struct rgb seen = see_surroundings(around, place, direction);
+	for (int i = 0; i < 3; i++)
+		colour.channel[i] = lerp_lanes(colour.channel[i], seen.channel[i], share);
+	return colour;
 }
 
 #endif

@@ -1,16 +1,14 @@
-#include "render/surface/gl/raster_cube.h"
+#include "render/light/gl/gl_cube.h"
 
 #include <GL/glew.h>
 
-#include "render/surface/gl/raster_programs.h"
+#define GZ_LOG_MODULE "light"
 
-#define GZ_LOG_MODULE "isosurface"
-
-static enum gz_result upload_cube(struct gz_raster_cube *cube, const struct gz_gl_device *device,
-				  const struct gz_surface_cube *pictures, const struct gz_log *log)
+static enum gz_result upload_cube(struct gz_gl_cube *cube, const struct gz_gl_device *device,
+				  const struct gz_cube_pictures *pictures, const struct gz_log *log)
 {
 	const int side = pictures->cube.edge + 2; /* with the rim */
-	gz_raster_cube_free(cube);
+	gz_gl_cube_free(cube);
 	cube->texture = gz_gl_texture(GL_TEXTURE_2D_ARRAY);
 	glTexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_RGBA8, side, side, GZ_CUBE_FACES);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
@@ -22,19 +20,20 @@ static enum gz_result upload_cube(struct gz_raster_cube *cube, const struct gz_g
 		       "the graphics device does not take six pictures of %d x %d: %s; take "
 		       "--backend cpu",
 		       pictures->cube.edge, pictures->cube.edge, gz_result_text(result));
-		gz_raster_cube_free(cube);
+		gz_gl_cube_free(cube);
 		return result;
 	}
 	cube->serial = pictures->serial;
 	return GZ_OK;
 }
 
-enum gz_result gz_raster_cube_bind(struct gz_raster_cube *cube, const struct gz_gl_device *device,
-				   const struct gz_surface_cube *pictures, const struct gz_log *log)
+enum gz_result gz_gl_cube_bind(struct gz_gl_cube *cube, const struct gz_gl_device *device,
+			       const struct gz_cube_pictures *pictures, unsigned unit,
+			       const struct gz_log *log)
 {
 	if (!pictures->cube.edge)
 		return GZ_OK;
-	glActiveTexture(GL_TEXTURE0 + GZ_RASTER_UNIT_CUBE);
+	glActiveTexture(GL_TEXTURE0 + unit);
 	enum gz_result result = GZ_OK;
 	if (!cube->texture || cube->serial != pictures->serial)
 		result = upload_cube(cube, device, pictures, log);
@@ -43,9 +42,9 @@ enum gz_result gz_raster_cube_bind(struct gz_raster_cube *cube, const struct gz_
 	return result;
 }
 
-void gz_raster_cube_free(struct gz_raster_cube *cube)
+void gz_gl_cube_free(struct gz_gl_cube *cube)
 {
 	if (cube->texture)
 		glDeleteTextures(1, &cube->texture);
-	*cube = (struct gz_raster_cube) { 0 };
+	*cube = (struct gz_gl_cube) { 0 };
 }
