@@ -168,15 +168,18 @@ static bool reference_has(const struct gz_comparison_list *list, size_t effect)
 	return false;
 }
 
-/* The ray caster has no reflection and no hard shadows, so surfaces with an effect have no
- * reference; those without one are opaque matter, lit by its gradient. */
+/* Surfaces are opaque matter, lit by its gradient. The ray caster has neither hard shadows nor
+ * glass, so surfaces with these have no reference. */
 static enum gz_comparison_reference reference_of(const struct gz_comparison_job *job,
 						 const struct gz_comparison_series *series)
 {
 	if (!job->request->errors)
 		return GZ_REFERENCE_NONE;
 	if (series->technique->sharing == GZ_SHARES_AS_OPAQUE)
-		return series->effect == 0 ? GZ_REFERENCE_SURFACE : GZ_REFERENCE_NONE;
+		return series->rays.surface.shadows ||
+				       series->rays.surface.material != GZ_MATERIAL_MATTE
+			       ? GZ_REFERENCE_NONE
+			       : GZ_REFERENCE_SURFACE;
 	return reference_has(job->list, series->effect) ? GZ_REFERENCE_VOLUME : GZ_REFERENCE_NONE;
 }
 

@@ -7,8 +7,10 @@
 #define SHADOW_STEPS "16"
 
 /* clang-format off */
-#define NO_REFLECTION { "isosurface.material", "matte" }, { "environment.kind", "none" }
-#define REFLECTION { "isosurface.material", "glass" }, { "environment.kind", "sky" }
+#define MATTE { "isosurface.material", "matte" }
+#define NO_REFLECTION { "light.reflection", "0" }, { "environment.kind", "none" }, MATTE
+#define REFLECTION { "light.reflection", "0.25" }, { "environment.kind", "sky" }, MATTE
+#define GLASS { "isosurface.material", "glass" }, { "environment.kind", "sky" }
 #define NO_SHADOW { "isosurface.shadows", "no" }, { "light.shadow_steps", "0" }
 #define SHADOW { "isosurface.shadows", "yes" }, { "light.shadow_steps", SHADOW_STEPS }
 
@@ -17,6 +19,7 @@ const struct gz_effect gz_effects[GZ_EFFECT_COUNT] = {
 	{ "reflection", "reflection", { REFLECTION, NO_SHADOW, { NULL, NULL } } },
 	{ "shadow", "shadow", { NO_REFLECTION, SHADOW, { NULL, NULL } } },
 	{ "both", "reflection and shadow", { REFLECTION, SHADOW, { NULL, NULL } } },
+	{ "glass", "reflection and refraction of glass", { GLASS, NO_SHADOW, { NULL, NULL } } },
 };
 /* clang-format on */
 

@@ -1,7 +1,7 @@
 /**
  * @file
- * The effects that techniques are compared with: reflection, shadow and both, as settings of a
- * scene. A technique takes those of its own keys.
+ * The effects that techniques are compared with: reflection, shadow, both and glass, as settings of
+ * a scene. A technique takes those of its own keys.
  */
 #ifndef GZ_BENCH_COMPARISON_EFFECTS_H
 #define GZ_BENCH_COMPARISON_EFFECTS_H
@@ -13,14 +13,14 @@
 #include "render/technique/technique.h"
 
 /** Effects. Each is one row of gz_effects[]. */
-#define GZ_EFFECT_COUNT 4
+#define GZ_EFFECT_COUNT 5
 
 /** Most settings of an effect. */
 #define GZ_EFFECT_SETTINGS_MAX 8
 
 /** One effect. */
 struct gz_effect {
-	const char *name;  /**< in files: "none", "reflection", "shadow", "both" */
+	const char *name;  /**< in files: "none", "reflection", "shadow", "both", "glass" */
 	const char *words; /**< in tables */
 	/** Keys of a scene and their values; key NULL behind the last. */
 	struct {

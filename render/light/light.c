@@ -21,6 +21,9 @@ const struct gz_option gz_light_options[] = {
 	  .help = "strength of highlights" },
 	{ "light.shininess", GZ_OPTION_DOUBLE, AT(shininess), 1, 1000, .preset = "24",
 	  .help = "exponent of highlights; larger is smaller and sharper" },
+	{ "light.reflection", GZ_OPTION_DOUBLE, AT(reflection), 0, 1, .preset = "0",
+	  .help = "share of the surroundings that surfaces mirror when looked at straight; 0 = "
+		  "off" },
 	{ "light.occlusion", GZ_OPTION_DOUBLE, AT(occlusion), 0, 1, .preset = "0",
 	  .help = "ambient occlusion, the share of ambient light that surroundings can block" },
 	{ "light.occlusion_radius", GZ_OPTION_DOUBLE, AT(occlusion_radius), 2, 64, .preset = "8",

@@ -46,6 +46,11 @@ enum gz_light_frame {
  * because a surface seen edge-on would otherwise be bright or dark by chance. The constants are in
  * render/light/light_constants.h.
  *
+ * A light.reflection r above 0 adds what the surface mirrors: lit becomes lit + m (S - lit), with
+ * m = r + (1 - r) (1 - |N.V|)^5 (Schlick 1994) and S what the surroundings
+ * (render/light/environment.h) show from the sample in the direction 2 (N.V) N - V. No shadow falls
+ * on it.
+ *
  * Shadows are single in-scattering: of the light that goes straight to the sample, the share T
  * arrives, and the rest is kept back on its way through the volume (Beer and Lambert). d and s are
  * multiplied by T, and c itself by ambient + (1 - ambient) T before the step to lit, so that smoke,
@@ -75,6 +80,8 @@ struct gz_light {
 	int frame;                         /**< enum gz_light_frame */
 	double ambient, diffuse, specular; /**< [0, 1] */
 	double shininess;                  /**< [1, 1000] */
+	double reflection;                 /**< share of the surroundings that a surface mirrors
+					      when looked at straight, [0, 1]; 0: none at all */
 	double occlusion;        /**< share of ambient light that surroundings can block, [0, 1];
 				    0 turns ambient occlusion off */
 	double occlusion_radius; /**< voxel lengths */

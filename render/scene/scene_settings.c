@@ -8,8 +8,8 @@
 #define GZ_LOG_MODULE "scene"
 
 _Static_assert(GZ_SCENE_LIGHT == GZ_SCENE_RAYS + 1 && GZ_SCENE_CLIP == GZ_SCENE_RAYS + 2 &&
-		       GZ_SCENE_ISOSURFACE == GZ_SCENE_RAYS + 3 &&
-		       GZ_SCENE_ENVIRONMENT == GZ_SCENE_RAYS + 4 &&
+		       GZ_SCENE_ENVIRONMENT == GZ_SCENE_RAYS + 3 &&
+		       GZ_SCENE_ISOSURFACE == GZ_SCENE_RAYS + 4 &&
 		       GZ_SCENE_SLICES == GZ_SCENE_RAYS + 5 && GZ_RAY_BINDINGS == 6,
 	       "gz_ray_params_bind() fills six tables");
 _Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");

@@ -67,6 +67,9 @@ static void effect_sets_what_the_technique_has_and_none_turns_it_off(void **stat
 		assert_int_equal(gz_effect_apply(&gz_effects[3], gz_techniques[i], &rays), GZ_OK);
 		assert_int_equal(rays.light.shadow_steps > 0,
 				 gz_technique_has_key(gz_techniques[i], "light.shadow_steps"));
+		assert_int_equal(rays.light.reflection > 0,
+				 gz_technique_has_key(gz_techniques[i], "light.reflection"));
+		assert_int_equal(gz_effect_apply(&gz_effects[4], gz_techniques[i], &rays), GZ_OK);
 		assert_int_equal(rays.surface.material == GZ_MATERIAL_GLASS,
 				 gz_technique_has_key(gz_techniques[i], "isosurface.material"));
 		assert_int_equal(gz_effect_apply(&gz_effects[0], gz_techniques[i], &rays), GZ_OK);
@@ -160,7 +163,7 @@ static void check_rows(const struct gz_comparison *comparison)
 	if (!(surface->converged.psnr_db > 24)) /* silhouettes, one ray a pixel */
 		fail_msg("%g dB", surface->converged.psnr_db);
 	assert_true(surface->prepare_ms > 0);
-	const struct gz_comparison_row *glass = find_row(comparison, "isosurface", "reflection", 1);
+	const struct gz_comparison_row *glass = find_row(comparison, "isosurface", "glass", 1);
 	assert_non_null(glass);
 	assert_int_equal(glass->reference, GZ_REFERENCE_NONE);
 	assert_true(isnan(glass->converged.flip));

@@ -250,8 +250,10 @@ static void trace(const struct gz_volume *volume, const struct gz_level *level,
 		if (from < to)
 			integrate(&ray, from, to);
 	}
+	double behind[3];
+	oracle_surroundings(volume, camera, rays, origin, direction, behind);
 	for (int channel = 0; channel < 3; channel++)
-		out_rgb[channel] = ray.rgb[channel] + ray.through * rays->background[channel];
+		out_rgb[channel] = ray.rgb[channel] + ray.through * behind[channel];
 }
 
 void oracle_pixel(const struct gz_volume *volume, const struct gz_transfer *transfer,

@@ -182,6 +182,72 @@ static double find_share(const struct gz_volume *volume, const struct gz_level *
 			at);
 }
 
+/* The floor, if the ray meets it. */
+static void see_floor(const struct gz_volume *volume, const struct gz_ray_params *rays,
+		      const double to_light[3], const double place[3], const double direction[3],
+		      double rgb[3])
+{
+	const struct gz_environment *around = &rays->environment;
+	double axes[3][3], half[3], there[3], lowest = 0;
+	gz_environment_axes(around, axes);
+	gz_volume_half_extent(volume, half);
+	for (int axis = 0; axis < 3; axis++)
+		lowest -= fabs(axes[0][axis]) * half[axis];
+	const double above = gz_dot3(place, axes[0]) - lowest, falls = -gz_dot3(direction, axes[0]);
+	if (above <= 0 || falls <= 1e-6)
+		return;
+	for (int axis = 0; axis < 3; axis++)
+		there[axis] = place[axis] + above / falls * direction[axis];
+	const double lamp =
+		rays->light.ambient + rays->light.diffuse * fmax(gz_dot3(to_light, axes[0]), 0);
+	const bool odd = fmod(floor(gz_dot3(there, axes[1]) / around->tile) +
+				      floor(gz_dot3(there, axes[2]) / around->tile),
+			      2) != 0;
+	for (int i = 0; i < 3; i++) {
+		const double tile = (odd ? around->dark : around->bright)[i] * lamp;
+		rgb[i] =
+			around->horizon[i] + exp2(-above / falls / 3) * (tile - around->horizon[i]);
+	}
+}
+
+void oracle_surroundings(const struct gz_volume *volume, const struct gz_camera *camera,
+			 const struct gz_ray_params *rays, const double place[3],
+			 const double direction[3], double out_rgb[3])
+{
+	const struct gz_environment *around = &rays->environment;
+	double up[3] = { around->up[0], around->up[1], around->up[2] }, to_light[3];
+	(void)gz_normalise3(up);
+	towards_light(camera, &rays->light, to_light);
+	const double height = fmax(gz_dot3(direction, up), 0);
+	const double sun = clamp((gz_dot3(direction, to_light) - 0.9962) / 0.0032, 0, 1);
+	for (int i = 0; i < 3; i++) {
+		const double sky = around->horizon[i] +
+				   height * (2 - height) * (around->zenith[i] - around->horizon[i]);
+		out_rgb[i] = around->kind == GZ_SURROUNDINGS_SKY ? sky + sun * sun * (1 - sky)
+								 : rays->background[i];
+	}
+	if (around->kind == GZ_SURROUNDINGS_SKY && around->floor)
+		see_floor(volume, rays, to_light, place, direction, out_rgb);
+}
+
+/* What a surface at voxel coordinates of the level mirrors, and its share. */
+static double mirror(const struct gz_volume *volume, const struct gz_level *level,
+		     const struct gz_camera *camera, const struct gz_ray_params *rays,
+		     const double at[3], const double normal[3], const double to_eye[3],
+		     double out_rgb[3])
+{
+	const double r = rays->light.reflection, cosine = gz_dot3(normal, to_eye);
+	double half[3], place[3], direction[3];
+	gz_volume_half_extent(volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		place[axis] =
+			(2 * at[axis] * level->factor[axis] / volume->dims[axis] - 1) * half[axis];
+		direction[axis] = 2 * cosine * normal[axis] - to_eye[axis];
+	}
+	oracle_surroundings(volume, camera, rays, place, direction, out_rgb);
+	return r > 0 ? r + (1 - r) * pow(1 - fmin(fabs(cosine), 1), 5) : 0;
+}
+
 void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 		  const struct gz_transfer *transfer, const struct gz_camera *camera,
 		  const struct gz_ray_params *rays, const struct oracle_occlusion *occlusion,
@@ -212,13 +278,15 @@ void oracle_shade(const struct gz_volume *volume, const struct gz_level *level,
 	const double weight = rays->shading == GZ_SHADING_GRADIENT
 				      ? gz_dot3(g, g) / (gz_dot3(g, g) + weak * weak)
 				      : 0;
+	double seen[3];
+	const double mirrored = mirror(volume, level, camera, rays, at, normal, to_eye, seen);
 	for (int channel = 0; channel < 3; channel++) {
-		const double lit =
-			rgb[channel] * (light->ambient * (1 - o) + light->diffuse * d * t) +
-			light->specular * s * t;
+		double lit = rgb[channel] * (light->ambient * (1 - o) + light->diffuse * d * t) +
+			     light->specular * s * t;
+		lit = clamp(lit, 0, 1) + mirrored * (seen[channel] - clamp(lit, 0, 1));
 		rgb[channel] *=
 			light->shadow_steps > 0 ? light->ambient + (1 - light->ambient) * t : 1;
-		rgb[channel] += weight * (clamp(lit, 0, 1) - rgb[channel]);
+		rgb[channel] += weight * (lit - rgb[channel]);
 	}
 }
 

@@ -38,6 +38,12 @@ struct oracle_occlusion oracle_occlusion_make(const struct gz_volume *volume,
 					      const struct gz_transfer *transfer,
 					      const struct gz_ray_params *rays);
 
+/** What a ray from a place in the world sees of the surroundings, none or a sky. @param direction
+ * of unit length */
+void oracle_surroundings(const struct gz_volume *volume, const struct gz_camera *camera,
+			 const struct gz_ray_params *rays, const double place[3],
+			 const double direction[3], double out_rgb[3]);
+
 /** Light a colour.
  *
  *  @param occlusion  NULL where neither occlusion nor shadows are asked for

@@ -184,6 +184,8 @@ static void pre_integrated_pictures_and_levels_of_detail_equal_the_cpus(void **s
 			scene.rays.levels = variant & 1;
 			scene.rays.integration =
 				variant & 2 ? GZ_INTEGRATION_PREINTEGRATED : GZ_INTEGRATION_SAMPLED;
+			scene.rays.environment.kind =
+				variant == 1 ? GZ_SURROUNDINGS_SKY : GZ_SURROUNDINGS_NONE;
 			check_pair(&pair, &scene, 640, 480, scene.rays.levels ? "levels" : "plain");
 		}
 		pair_free(&pair);

@@ -73,6 +73,36 @@ static void shading_by_light_from_behind_and_from_aside_equals_the_oracle(void *
 	}
 }
 
+/* The rims of floor tiles go either way. */
+static void surroundings_behind_and_mirrored_equal_the_oracle(void **state)
+{
+	(void)state;
+	for (int variant = 0; variant < 8; variant++) {
+		struct small_scene scene = lit_waves(24, 20, 27, GZ_VOXEL_U8);
+		struct gz_environment *around = &scene.rays.environment;
+		around->kind = variant & 1 ? GZ_SURROUNDINGS_SKY : GZ_SURROUNDINGS_NONE;
+		around->floor = variant & 2;
+		around->tile = 0.4;
+		memcpy(around->up, (double[3]) { 0.3, -0.2, 0.9 }, 3 * sizeof(double));
+		memcpy(scene.rays.background, (double[3]) { 0.2, 0.9, 0.4 }, 3 * sizeof(double));
+		scene.rays.light.reflection = variant & 4 ? 0.3 : 0;
+		light_from(&scene, GZ_LIGHT_WORLD, 0.4, 0.7, 0.5);
+		oracle_check_but(&scene, 45, 37, around->floor ? 8 : 0);
+		small_scene_free(&scene);
+	}
+}
+
+/* Without light there are surroundings, too, and segments take in their ends. */
+static void surroundings_behind_unlit_matter_equal_the_oracle(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U16);
+	scene.rays.environment.kind = GZ_SURROUNDINGS_SKY;
+	scene.rays.environment.floor = false;
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	oracle_check(&scene, 45, 37);
+}
+
 static void shading_of_any_strength_equals_the_oracle(void **state)
 {
 	(void)state;
@@ -576,6 +606,8 @@ TEST_SUITE(shading)
 		cmocka_unit_test(inside_of_a_ball_is_lit_as_its_outside),
 		cmocka_unit_test(even_matter_keeps_its_colour),
 		cmocka_unit_test(occlusion_darkens_a_corner_and_leaves_walls),
+		cmocka_unit_test(surroundings_behind_and_mirrored_equal_the_oracle),
+		cmocka_unit_test(surroundings_behind_unlit_matter_equal_the_oracle),
 		cmocka_unit_test(shading_is_the_same_bits_for_any_number_of_threads),
 		cmocka_unit_test(lit_rays_have_the_same_colour_in_tiles_of_any_spacing),
 		cmocka_unit_test(light_without_direction_or_beyond_its_range_is_refused),

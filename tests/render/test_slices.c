@@ -126,7 +126,8 @@ static void slices_of_lit_float_data_converge_to_rays_in_parallel(void **state)
 	struct small_scene scene = small_scene_waves(30, 21, 40, GZ_VOXEL_F32);
 	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
 	scene.rays.shading = GZ_SHADING_GRADIENT;
-	scene.rays.background[2] = 0.5;
+	scene.rays.environment.kind = GZ_SURROUNDINGS_SKY;
+	scene.rays.light.reflection = 0.3;
 	check_convergence(&scene, "lit floats");
 }
 
@@ -359,6 +360,9 @@ static void shaders_of_slices_are_valid_for_the_reference_compiler(void **state)
 		shader_check(&shaders[1]);
 	}
 	shader_check(&shaders[0]);
+	gz_gl_behind_shaders((struct gz_gl_cast_kind) { .type = GZ_VOXEL_U8 },
+			     &(const struct gz_gl_device) { 0 }, defines, shaders);
+	shader_check(&shaders[1]);
 	gz_gl_hide_shaders(shaders);
 	shader_check(&shaders[0]);
 	shader_check(&shaders[1]);

@@ -398,6 +398,59 @@ static void sky_is_a_hit_behind_everything_for_other_techniques(void **state)
 	assert_true(count_sky_hits(GZ_SURROUNDINGS_SKY) > WIDTH * HEIGHT / 2);
 }
 
+/* Matter that mirrors everything is a mirror, and else what it is without, and the sky by Schlick's
+ * share. */
+static void ball_of_matter_mirrors_the_sky(enum gz_surface_source source, double reflection,
+					   const char *simd)
+{
+	struct glass_stage plain, stage;
+	double sum = 0;
+	int count = 0;
+	set_up_glass(field_ball, &plain);
+	plain.rays.surface.material = GZ_MATERIAL_MATTE;
+	plain.rays.surface.source = source;
+	set_up_glass(field_ball, &stage);
+	stage.rays.surface = plain.rays.surface;
+	stage.rays.light.reflection = reflection;
+	draw_glass(&plain, 2, simd);
+	draw_glass(&stage, 2, simd);
+	for (int y = 0; y < HEIGHT; y++)
+		for (int x = 0; x < WIDTH; x++) {
+			double place[2], rgb[3];
+			place_of(x, y, &stage, place);
+			const double across2 = (place[0] * place[0] + place[1] * place[1]) / 400;
+			if (across2 > 0.8)
+				continue; /* chords move the rim */
+			const double facing = sqrt(1 - across2);
+			const double direction[3] = { 2 * facing * place[0] / 20,
+						      1 - 2 * facing * facing,
+						      2 * facing * place[1] / 20 };
+			const double share = reflection + (1 - reflection) * pow(1 - facing, 5);
+			sky_at(&stage.rays, direction, rgb);
+			for (int i = 0; i < 3; i++) {
+				const double own =
+					plain.image.pixels[4 * (y * WIDTH + x) + i] / 255.0;
+				rgb[i] = own + share * (rgb[i] - own);
+			}
+			sum += off_by(&stage, x, y, rgb);
+			count++;
+		}
+	if (count < 2000 || sum / count > 0.7)
+		fail_msg("source %d, %s, %g: mean %.2f grey levels of %d pixels", source, simd,
+			 reflection, sum / count, count);
+	take_down_glass(&plain);
+	take_down_glass(&stage);
+}
+
+static void matter_mirrors_the_sky_by_schlicks_share(void **state)
+{
+	(void)state;
+	for (const char *const *set = small_scene_simd_sets(); *set; set++) {
+		ball_of_matter_mirrors_the_sky(GZ_SURFACE_TRIANGLES, 1, *set);
+		ball_of_matter_mirrors_the_sky(GZ_SURFACE_VOXELS, 0.2, *set);
+	}
+}
+
 static void glass_without_a_sky_sees_the_background(void **state)
 {
 	(void)state;
@@ -460,6 +513,7 @@ TEST_SUITE(surface_glass)
 		cmocka_unit_test(block_of_glass_reflects_all_beyond_the_critical_angle),
 		cmocka_unit_test(floor_and_sky_behind_bodies_are_those_of_their_formulas),
 		cmocka_unit_test(sky_is_a_hit_behind_everything_for_other_techniques),
+		cmocka_unit_test(matter_mirrors_the_sky_by_schlicks_share),
 		cmocka_unit_test(glass_without_a_sky_sees_the_background),
 		cmocka_unit_test(glass_has_the_planes_of_matter_and_the_same_bits_for_any_threads),
 		cmocka_unit_test(glass_and_surroundings_beyond_their_ranges_are_refused),

@@ -284,6 +284,8 @@ static void glass_over_a_floor_looks_as_by_rays_of_one_bounce(void **state)
 	check_same(&stage, &object, 1, "glass over a floor");
 	stage.rays.surface.material = GZ_MATERIAL_MATTE;
 	check_same(&stage, &object, 1, "matter over a floor");
+	stage.rays.light.reflection = 0.3;
+	check_same(&stage, &object, 1, "matter that mirrors a floor");
 	stage.rays.surface.material = GZ_MATERIAL_GLASS;
 	stage.rays.environment.kind = GZ_SURROUNDINGS_NONE;
 	check_same(&stage, &object, 1, "glass without a sky");

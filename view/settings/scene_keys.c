@@ -8,9 +8,9 @@
 #include "render/surface/isosurface_technique.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
-	GZ_SCENE_CAMERA,    GZ_SCENE_IMAGE,      GZ_SCENE_RAYS,        GZ_SCENE_LIGHT,
-	GZ_SCENE_CLIP,      GZ_SCENE_ISOSURFACE, GZ_SCENE_ENVIRONMENT, GZ_SCENE_SLICES,
-	GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION,  GZ_SCENE_TEMPORAL,    GZ_SCENE_VIEW,
+	GZ_SCENE_CAMERA,    GZ_SCENE_IMAGE,       GZ_SCENE_RAYS,       GZ_SCENE_LIGHT,
+	GZ_SCENE_CLIP,      GZ_SCENE_ENVIRONMENT, GZ_SCENE_ISOSURFACE, GZ_SCENE_SLICES,
+	GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION,   GZ_SCENE_TEMPORAL,   GZ_SCENE_VIEW,
 };
 
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
@@ -73,14 +73,20 @@ static bool by_matte(const struct gz_scene_settings *settings)
 	return by_isosurface(settings) && !by_glass(settings);
 }
 
+static bool in_every_scene(const struct gz_scene_settings *settings)
+{
+	(void)settings;
+	return true;
+}
+
 static bool under_the_sky(const struct gz_scene_settings *settings)
 {
-	return by_isosurface(settings) && settings->rays.environment.kind == GZ_SURROUNDINGS_SKY;
+	return settings->rays.environment.kind == GZ_SURROUNDINGS_SKY;
 }
 
 static bool with_a_zenith(const struct gz_scene_settings *settings)
 {
-	return by_isosurface(settings) && settings->rays.environment.kind != GZ_SURROUNDINGS_NONE;
+	return settings->rays.environment.kind != GZ_SURROUNDINGS_NONE;
 }
 
 static bool on_the_floor(const struct gz_scene_settings *settings)
@@ -184,8 +190,8 @@ static const struct {
 	{ "environment.tile", on_the_floor },
 	{ "environment.bright", on_the_floor },
 	{ "environment.dark", on_the_floor },
-	{ "environment.kind", by_isosurface },
-	{ "environment.cube", by_isosurface },
+	{ "environment.kind", in_every_scene },
+	{ "environment.cube", in_every_scene },
 	{ "environment.up", with_a_zenith },
 	{ "environment.", under_the_sky },
 	{ "slices.", by_slices },

@@ -10,6 +10,7 @@
 
 #include "render/data/brick_pool.h"
 #include "render/data/volume.h"
+#include "render/light/surroundings.h"
 #include "render/plan/plan.h"
 #include "render/raycast/cpu/fine_cells.h"
 #include "render/raycast/shared/cast_constants.h"
@@ -73,9 +74,9 @@ struct gz_cast {
 	float world_per_voxel[3];               /**< world units per voxel */
 	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
 	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the steps in voxel lengths */
-	float background[3];
 	float end_transmittance; /**< a ray ends when less than this share of light comes through */
 	struct gz_cast_light light;
+	struct gz_seen_surroundings around; /**< world units */
 	const uint32_t *colours; /**< of voxels in memory, see gz_colour_pack(); NULL without */
 };
 

@@ -180,7 +180,7 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 		if (!vm_any(rays.hit)) {
 			if (__builtin_expect(tile->hit_depth != NULL, 0))
 				composite_hits(tile, first, &light);
-			vi_store(out_pixels + first, to_pixel(cast, &light));
+			vi_store(out_pixels + first, to_pixel(cast, tile, first, &light));
 			continue;
 		}
 		if (rich && cast->light.on) {
@@ -192,7 +192,7 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 								  : cast_by_samples(&march, &light);
 		if (__builtin_expect(tile->hit_depth != NULL, 0))
 			composite_hits(tile, first, &light);
-		vi_store(out_pixels + first, to_pixel(cast, &light));
+		vi_store(out_pixels + first, to_pixel(cast, tile, first, &light));
 	}
 	return samples;
 }

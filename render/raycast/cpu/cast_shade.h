@@ -12,6 +12,7 @@
 #include "render/raycast/cpu/cast_fetch.h"
 #include "render/raycast/cpu/cast_rays.h"
 #include "render/raycast/cpu/simd_light.h"
+#include "render/raycast/cpu/simd_surroundings.h"
 #include "render/raycast/shared/cast_constants.h"
 
 /* Colour gathered so far, front to back, and the share of light that still comes through. */
@@ -56,15 +57,49 @@ SIMD void composite_hits(const struct gz_cast_tile *tile, int first, struct ligh
 	composite_colour(colour, vf_set(1), met, light);
 }
 
-SIMD vi to_pixel(const struct gz_cast *cast, const struct light *light)
+/* The world place of voxel coordinates along an axis. */
+SIMD vf world_place(const struct gz_cast *cast, int axis, vf at)
 {
-	const vf *t = &light->through;
-	const vi red =
-		to_byte(vf_fma(*t, vf_set(cast->background[0]), light->red * vf_set(1.0F / 2047)));
-	const vi green = to_byte(
-		vf_fma(*t, vf_set(cast->background[1]), light->green * vf_set(1.0F / 2047)));
-	const vi blue =
-		to_byte(vf_fma(*t, vf_set(cast->background[2]), light->blue * vf_set(1.0F / 1023)));
+	return (at - vf_set(0.5F * cast->box[axis])) * vf_set(cast->world_per_voxel[axis]);
+}
+
+/* What the rays of a register see behind the volume. Not inlined, for the reasons of shade(). */
+static __attribute__((noinline)) struct rgb see_behind(const struct gz_cast *cast,
+						       const struct gz_cast_tile *tile, int first)
+{
+	const vf x = vf_load(tile->x + first), y = vf_load(tile->y + first);
+	vf origin[3], direction[3], length2 = vf_set(0);
+	for (int axis = 0; axis < 3; axis++) {
+		origin[axis] = vf_fma(
+			y, vf_set(cast->origin_dy[axis]),
+			vf_fma(x, vf_set(cast->origin_dx[axis]), vf_set(cast->origin00[axis])));
+		origin[axis] = world_place(cast, axis, origin[axis]);
+		direction[axis] = vf_fma(y, vf_set(cast->direction_dy[axis]),
+					 vf_fma(x, vf_set(cast->direction_dx[axis]),
+						vf_set(cast->direction00[axis])));
+		direction[axis] = direction[axis] * vf_set(cast->world_per_voxel[axis]);
+		length2 = vf_fma(direction[axis], direction[axis], length2);
+	}
+	const vf inverse = vf_set(1) / vf_sqrt(length2);
+	for (int axis = 0; axis < 3; axis++)
+		direction[axis] = direction[axis] * inverse;
+	return see_surroundings(&cast->around, origin, direction);
+}
+
+/* The pixels of rays number `first` and after of a tile. */
+SIMD vi to_pixel(const struct gz_cast *cast, const struct gz_cast_tile *tile, int first,
+		 const struct light *light)
+{
+	const vf t = light->through;
+	struct rgb behind;
+	if (__builtin_expect(cast->around.kind != GZ_SURROUNDINGS_NONE, 0))
+		behind = see_behind(cast, tile, first);
+	else
+		for (int i = 0; i < 3; i++)
+			behind.channel[i] = vf_set(cast->around.horizon[i]);
+	const vi red = to_byte(vf_fma(t, behind.channel[0], light->red * vf_set(1.0F / 2047)));
+	const vi green = to_byte(vf_fma(t, behind.channel[1], light->green * vf_set(1.0F / 2047)));
+	const vi blue = to_byte(vf_fma(t, behind.channel[2], light->blue * vf_set(1.0F / 1023)));
 	const vi opaque = vi_set((int32_t)0xFF000000);
 	return vi_or(vi_or(red, vi_shift_left(green, 8)), vi_or(vi_shift_left(blue, 16), opaque));
 }
@@ -280,16 +315,18 @@ SIMD vf find_arriving(const struct gz_cast *cast, const vf at[3], vm mask)
 struct lighting {
 	vf even;
 	struct shine shine;
+	struct mirrored mirrored;
 	vf weight;
 };
 
 /* Light one channel of a colour, 0 to `full`. */
-SIMD vf shade_channel(vf colour, float full, const struct lighting *lighting)
+SIMD vf shade_channel(vf colour, float full, const struct lighting *lighting, int channel)
 {
 	const struct shine *shine = &lighting->shine;
+	const struct mirrored *mirrored = &lighting->mirrored;
 	const vf even = colour * lighting->even;
-	const vf lit =
-		vf_min(vf_fma(colour, shine->factor, shine->white * vf_set(full)), vf_set(full));
+	vf lit = vf_min(vf_fma(colour, shine->factor, shine->white * vf_set(full)), vf_set(full));
+	lit = lerp_lanes(lit, mirrored->seen.channel[channel] * vf_set(full), mirrored->share);
 	return vf_fma(lighting->weight, lit - even, even);
 }
 
@@ -315,6 +352,13 @@ SIMD void light_surfaces(const struct gz_cast *cast, struct reading reading,
 		shine->factor = vf_fma(arriving, shine->factor - ambient, ambient);
 		shine->white = shine->white * arriving;
 	}
+	if (cast->light.reflection > 0) {
+		vf place[3];
+		for (int axis = 0; axis < 3; axis++)
+			place[axis] = world_place(cast, axis, at[axis] + vf_set(0.5F));
+		lighting->mirrored = find_mirrored(&cast->around, cast->light.reflection, place,
+						   gradient, view->eye);
+	}
 }
 
 /* Light a colour at k. Not inlined: only visible samples need it, which are few, and one function
@@ -327,6 +371,8 @@ static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
 	const struct view *view = rays->view;
 	struct lighting lighting = { .even = vf_set(1),
 				     .shine = { vf_set(0), vf_set(0) },
+				     .mirrored = { { { vf_set(0), vf_set(0), vf_set(0) } },
+						   vf_set(0) },
 				     .weight = vf_set(0) };
 	vf at[3], arriving = vf_set(1);
 	for (int axis = 0; axis < 3; axis++)
@@ -339,9 +385,9 @@ static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
 	if (cast->light.gradient)
 		light_surfaces(cast, reading, view, at, mask, arriving, &lighting);
 	return (struct colour) {
-		shade_channel(colour.red, 2047, &lighting),
-		shade_channel(colour.green, 2047, &lighting),
-		shade_channel(colour.blue, 1023, &lighting),
+		shade_channel(colour.red, 2047, &lighting, 0),
+		shade_channel(colour.green, 2047, &lighting, 1),
+		shade_channel(colour.blue, 1023, &lighting, 2),
 	};
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/workers.h"
+#include "render/light/cube_pictures.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/fine_cells.h"
 #include "render/raycast/cpu/light_grid.h"
@@ -75,6 +76,7 @@ struct cpu_raycaster {
 	struct gz_preintegration preintegration;
 	struct gz_lighting lighting;
 	struct gz_light_grid light_grid;
+	struct gz_cube_pictures pictures; /* of the surroundings, if they are wanted */
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
@@ -121,6 +123,7 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	gz_brick_stream_free(&cpu->stream);
 	gz_lighting_free(&cpu->lighting);
 	gz_light_grid_free(&cpu->light_grid);
+	gz_cube_pictures_free(&cpu->pictures);
 	gz_lattices_free(&cpu->lattices);
 	free(cpu->step_tables);
 	free(cpu->table);
@@ -332,8 +335,6 @@ static void fill_cast_transfer(struct cpu_raycaster *cpu, const struct gz_plan *
 		cast->voxel_lengths[i] = (float)length;
 		cast->step[i] = (float)(length * gz_volume_voxel_length(cpu->volume));
 	}
-	for (int channel = 0; channel < 3; channel++)
-		cast->background[channel] = (float)rays->background[channel];
 	cast->end_transmittance = gz_ray_end_transmittance(rays);
 }
 
@@ -504,6 +505,27 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 	return GZ_OK;
 }
 
+/* What lies around the volume, after gz_lighting_fill(). */
+static void surround_casts(const struct cpu_raycaster *cpu, const struct gz_ray_params *rays,
+			   struct cast_job *job)
+{
+	struct gz_seen_surroundings around;
+	double half[3];
+	gz_volume_half_extent(cpu->volume, half);
+	const struct gz_surroundings_request request = {
+		.environment = &rays->environment,
+		.cube = &cpu->pictures.cube,
+		.light = &rays->light,
+		.background = rays->background,
+		.half = half,
+		.towards = job->casts[0].light.towards,
+		.lengths_a_unit = 1,
+	};
+	gz_seen_surroundings_make(&request, &around);
+	for (int i = 0; i < job->cast_count; i++)
+		job->casts[i].around = around;
+}
+
 /* Make the grid of shadows, if the frame has them. */
 static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_ray_params *rays,
 				  struct cast_job *job)
@@ -556,8 +578,12 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 		return result;
 
 	const int64_t start_ns = gz_clock_now_ns();
-	result = gz_lighting_prepare(&cpu->lighting, cpu->volume, cpu->table, rays, cpu->workers,
-				     raycaster->log);
+	double prepare_ms = 0;
+	result = gz_cube_pictures_prepare(&cpu->pictures, &rays->environment, raycaster->log,
+					  &prepare_ms);
+	if (result == GZ_OK)
+		result = gz_lighting_prepare(&cpu->lighting, cpu->volume, cpu->table, rays,
+					     cpu->workers, raycaster->log);
 	if (result != GZ_OK)
 		return result;
 	const bool nearest = gz_ray_samples_nearest(rays, cpu->volume);
@@ -581,6 +607,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 		result = light_casts(cpu, rays, &job);
 	if (result != GZ_OK)
 		return result;
+	surround_casts(cpu, rays, &job);
 	fill_tile_offsets(&job);
 	const uint64_t samples = cast_tiles(cpu, &job);
 	const int64_t cast_ns = gz_clock_now_ns();

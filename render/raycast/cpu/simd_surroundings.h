@@ -167,21 +167,24 @@ SIMD struct rgb see_surroundings(const struct gz_seen_surroundings *around, cons
 	return seen;
 }
 
-/* A colour, 0 to 1, with what it mirrors: struct gz_light has the formula. */
-SIMD struct rgb mirror_surroundings(const struct gz_seen_surroundings *around, vf reflection,
-				    const vf place[3], const vf normal[3], const vf to_eye[3],
-				    struct rgb colour)
+/* What a surface mirrors, and with which share: struct gz_light has the formula. */
+struct mirrored {
+	struct rgb seen;
+	vf share;
+};
+
+SIMD struct mirrored find_mirrored(const struct gz_seen_surroundings *around, float reflection,
+				   const vf place[3], const vf normal[3], const vf to_eye[3])
 {
 	const vf along = dot_lanes(normal, to_eye), one = vf_set(1);
 	const vf outside = one - vf_min(vf_abs(along), one), power2 = outside * outside;
-	const vf share = vf_fma((one - reflection) * power2 * power2, outside, reflection);
 	vf direction[3];
 	for (int axis = 0; axis < 3; axis++)
 		direction[axis] = vf_fma(along + along, normal[axis], vf_set(0) - to_eye[axis]);
-	const struct rgb seen = see_surroundings(around, place, direction);
-	for (int i = 0; i < 3; i++)
-		colour.channel[i] = lerp_lanes(colour.channel[i], seen.channel[i], share);
-	return colour;
+	return (struct mirrored) {
+		see_surroundings(around, place, direction),
+		vf_fma(vf_set(1 - reflection) * power2 * power2, outside, vf_set(reflection)),
+	};
 }
 
 #endif

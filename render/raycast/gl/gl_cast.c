@@ -20,17 +20,24 @@ extern const char gz_glsl_cast_block_glsl[];
 extern const char gz_glsl_fetch_glsl[];
 extern const char gz_glsl_shine_glsl[];
 extern const char gz_glsl_shade_glsl[];
+extern const char gz_glsl_surroundings_glsl[];
 extern const char gz_glsl_cast_comp[];
 
 #define TEXT_OF(number)      #number
 #define DEFINE(name, number) "#define " name " " TEXT_OF(number) "\n"
+
+/* GZ_GL_UNIT_CUBE as a literal number. */
+#define UNIT_CUBE 6
+
+_Static_assert(UNIT_CUBE == GZ_GL_UNIT_CUBE, "the pictures are bound there");
 
 static const char cast_sizes[] = DEFINE("COUNT_SLOTS", GZ_GL_COUNT_SLOTS)
 	DEFINE("BRICK_EDGE", GZ_GL_BRICK_EDGE) DEFINE("BRICK_STORED_EDGE", GZ_GL_BRICK_STORED_EDGE)
 		DEFINE("BRICK_LEVELS", GZ_GL_BRICK_LEVELS)
 			DEFINE("BRICK_LEVEL_BITS", GZ_GL_BRICK_LEVEL_BITS)
 				DEFINE("BRICK_PLACE_BITS", GZ_GL_BRICK_PLACE_BITS)
-					DEFINE("COLOUR_WEIGHT_SHARE", GZ_GL_COLOUR_WEIGHT_SHARE);
+					DEFINE("COLOUR_WEIGHT_SHARE", GZ_GL_COLOUR_WEIGHT_SHARE)
+						DEFINE("UNIT_CUBE", UNIT_CUBE);
 
 _Static_assert(GZ_GL_COLOUR_WEIGHT_SHARE == GZ_COLOUR_WEIGHT_SHARE, "shaders weigh as C does");
 
@@ -51,6 +58,7 @@ _Static_assert(GZ_LEVELS_MAX <= GZ_GL_TILE_LEVELS_MAX, "a tile's level of detail
 const char *const gz_gl_sample_parts[GZ_GL_SAMPLE_PARTS] = {
 	gz_glsl_transfer_constants_h, gz_glsl_light_constants_h,
 	gz_glsl_cast_constants_h,     cast_sizes,
+	gz_gl_surroundings_numbers,   gz_glsl_surroundings_glsl,
 	gz_glsl_cast_block_glsl,      gz_glsl_fetch_glsl,
 	gz_glsl_shine_glsl,           gz_glsl_shade_glsl,
 };

@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/data/volume.h"
+#include "render/light/gl/gl_surroundings.h"
 #include "render/opengl/gl_device.h"
 #include "render/opengl/gl_program.h"
 #include "render/raycast/gl/gl_textures.h"
@@ -43,6 +44,7 @@ enum gz_gl_texture_unit {
 	GZ_GL_UNIT_SEGMENTS,
 	GZ_GL_UNIT_OCCLUSION,
 	GZ_GL_UNIT_COLOURS,
+	GZ_GL_UNIT_CUBE,
 };
 
 /** Storage buffers, besides those of the plan. */
@@ -57,18 +59,18 @@ enum gz_gl_cast_storage {
 struct gz_gl_cast_block {
 	float origin00[4], origin_dx[4], origin_dy[4];          /**< voxel coordinates */
 	float direction00[4], direction_dx[4], direction_dy[4]; /**< of rays of pixels */
-	float world_per_voxel[4];
-	float dims[4]; /**< voxels */
-	float box[4];  /**< far corner: dims, or less for a coarser level of odd size */
+	float world_per_voxel[4]; /**< world units along each axis; depth at which rays begin */
+	float dims[4];            /**< voxels */
+	float box[4];             /**< far corner: dims, or less for a coarser level of odd size */
 	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
 	float cell_counts[4];                  /**< macrocells */
-	float background[4];                   /**< [0, 1] */
 	float transfer[4];       /**< scale and bias from stored value to share of the table; the
 				    share of light with which a ray ends; the last entry's number */
 	float light_towards[4];  /**< world directions; share of the ambient light that can be kept
 				    away */
 	float light_terms[4];    /**< ambient, diffuse, specular, shininess */
-	float gradient_scale[4]; /**< see gz_light_gradient_scale(); of the level of detail */
+	float gradient_scale[4]; /**< see gz_light_gradient_scale(), of the level of detail;
+				    light.reflection */
 	float occlusion_scale[4], occlusion_bias[4]; /**< from places counted from the first datum
 							to those counted from the first cell's */
 	float occlusion_last[4];                     /**< greatest index of a cell */
@@ -78,6 +80,7 @@ struct gz_gl_cast_block {
 				    next along y, z */
 	float brick_last[4];     /**< greatest number of a brick along each axis */
 	float brick_scales[GZ_GL_BRICK_LEVELS][4]; /**< see struct gz_brick_lookup */
+	struct gz_gl_surroundings around;          /**< world units */
 };
 
 /** Kinds of cast; each has its own program. */
@@ -107,7 +110,7 @@ struct gz_gl_cast {
 /** The source parts that give a shader samples of the volume, their colours and their light:
  *  constants, the uniform block, fetches and shading. They follow the constants of the plan
  *  (gz_gl_plan_parts[0]) and need gz_gl_cast_defines(). */
-#define GZ_GL_SAMPLE_PARTS     8
+#define GZ_GL_SAMPLE_PARTS     10
 #define GZ_GL_SAMPLE_CONSTANTS 2 /**< the part that is cast_constants.h */
 extern const char *const gz_gl_sample_parts[GZ_GL_SAMPLE_PARTS];
 

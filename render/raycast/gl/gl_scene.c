@@ -200,6 +200,18 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_r
 	return result;
 }
 
+/* Read and upload the pictures of the surroundings. */
+static enum gz_result prepare_pictures(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				       const struct gz_ray_params *rays, const struct gz_log *log)
+{
+	double prepare_ms = 0;
+	const enum gz_result result =
+		gz_cube_pictures_prepare(&scene->pictures, &rays->environment, log, &prepare_ms);
+	return result == GZ_OK ? gz_gl_cube_bind(&scene->cube, device, &scene->pictures,
+						 GZ_GL_UNIT_CUBE, log)
+			       : result;
+}
+
 /* Make and upload the coarser levels, unless the device has them. */
 static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 			   const struct gz_log *log)
@@ -286,6 +298,8 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 	}
 	enum gz_result result = prepare_light(scene, frame->rays, log);
 	if (result == GZ_OK)
+		result = prepare_pictures(scene, device, frame->rays, log);
+	if (result == GZ_OK)
 		result = prepare_tables(scene, frame->rays, plan, log);
 	if (result == GZ_OK && scene->bricked)
 		result = prepare_bricks(scene, frame, coarser ? pixel_lengths : 0,
@@ -329,6 +343,26 @@ static void fill_block_volume(const struct gz_gl_scene *scene, int index,
 	}
 }
 
+static void fill_block_surroundings(const struct gz_gl_scene *scene,
+				    const struct gz_ray_params *rays, const float towards[3],
+				    struct gz_gl_cast_block *block)
+{
+	struct gz_seen_surroundings around;
+	double half[3];
+	gz_volume_half_extent(scene->volume, half);
+	const struct gz_surroundings_request request = {
+		.environment = &rays->environment,
+		.cube = &scene->pictures.cube,
+		.light = &rays->light,
+		.background = rays->background,
+		.half = half,
+		.towards = towards,
+		.lengths_a_unit = 1,
+	};
+	gz_seen_surroundings_make(&request, &around);
+	gz_gl_surroundings_fill(&around, &block->around);
+}
+
 static void fill_block_light(const struct gz_gl_scene *scene, const int factor[3],
 			     const struct gz_ray_frame *world, const struct gz_ray_params *rays,
 			     struct gz_gl_cast_block *block)
@@ -347,6 +381,8 @@ static void fill_block_light(const struct gz_gl_scene *scene, const int factor[3
 	block->light_terms[1] = light.diffuse;
 	block->light_terms[2] = light.specular;
 	block->light_terms[3] = light.shininess;
+	block->gradient_scale[3] = light.reflection;
+	fill_block_surroundings(scene, rays, light.towards, block);
 }
 
 void gz_gl_scene_bind(const struct gz_gl_scene *scene)
@@ -356,6 +392,8 @@ void gz_gl_scene_bind(const struct gz_gl_scene *scene)
 		gz_gl_bricks_bind(&scene->bricks);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_OCCLUSION);
 	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_CUBE);
+	glBindTexture(GL_TEXTURE_2D_ARRAY, scene->cube.texture);
 	glActiveTexture(GL_TEXTURE0);
 }
 
@@ -371,6 +409,7 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	fill_block_light(scene, scene->detail.levels.level[level].factor, world, rays, block);
 	if (scene->bricked)
 		gz_gl_bricks_fill(&scene->bricks, scene->detail.brick_level[level], block);
+	block->world_per_voxel[3] = (float)frame->near;
 	block->jitter[0] = (uint32_t)rays->jitter;
 	block->jitter[1] = (uint32_t)plan->view.shift[0];
 	block->jitter[2] = (uint32_t)plan->view.shift[1];
@@ -384,8 +423,6 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 		block->steps[i][0] = (float)(length * voxel_length);
 		block->steps[i][1] = (float)length;
 	}
-	for (int channel = 0; channel < 3; channel++)
-		block->background[channel] = (float)rays->background[channel];
 }
 
 void gz_gl_scene_forget(struct gz_gl_scene *scene)
@@ -394,6 +431,7 @@ void gz_gl_scene_forget(struct gz_gl_scene *scene)
 	gz_detail_free(&scene->detail);
 	gz_preintegration_free(&scene->preintegration);
 	gz_lighting_free(&scene->lighting);
+	gz_cube_pictures_free(&scene->pictures);
 	gz_workers_destroy(&scene->workers);
 	free(scene->table);
 	*scene = (struct gz_gl_scene) { 0 };
@@ -403,6 +441,7 @@ void gz_gl_scene_free(struct gz_gl_scene *scene)
 {
 	free_levels(scene);
 	gz_gl_tables_free(&scene->tables);
+	gz_gl_cube_free(&scene->cube);
 	if (scene->occlusion)
 		glDeleteTextures(1, &scene->occlusion);
 	gz_gl_scene_forget(scene);

@@ -10,6 +10,8 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/light/cube_pictures.h"
+#include "render/light/gl/gl_cube.h"
 #include "render/picture/camera.h"
 #include "render/raycast/gl/gl_bricks.h"
 #include "render/raycast/gl/gl_cast.h"
@@ -35,6 +37,8 @@ struct gz_gl_scene {
 	struct gz_gl_bricks bricks;
 	struct gz_gl_tables tables;
 	struct gz_lighting lighting;
+	struct gz_cube_pictures pictures; /**< of the surroundings, if they are wanted */
+	struct gz_gl_cube cube;
 	unsigned occlusion;    /**< texture of the grid of occlusion; 0 = none */
 	int occlusion_dims[3]; /**< of the texture */
 };
@@ -59,6 +63,7 @@ enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
 struct gz_gl_frame {
 	const struct gz_camera *camera;   /**< valid */
 	const struct gz_ray_frame *world; /**< the camera's rays, by pixels of the plan */
+	double near; /**< depth at which they begin, in lengths of their directions */
 	const struct gz_ray_params *rays;
 	const struct gz_plan *plan;
 	bool wait; /**< wait until all bricks are there that have room */

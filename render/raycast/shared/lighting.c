@@ -150,6 +150,7 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		.diffuse = (float)light->diffuse,
 		.specular = (float)light->specular,
 		.shininess = (float)light->shininess,
+		.reflection = (float)light->reflection,
 		.occlusion = (float)light->occlusion,
 	};
 	for (int axis = 0; axis < 3; axis++) {

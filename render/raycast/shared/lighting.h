@@ -49,6 +49,7 @@ struct gz_cast_light {
 	bool gradient;    /**< surfaces are lit */
 	float towards[3]; /**< unit vector in world directions */
 	float ambient, diffuse, specular, shininess;
+	float reflection;
 	float gradient_scale[3];       /**< see gz_light_gradient_scale(); of the level of detail */
 	float occlusion;               /**< greatest share of the ambient light that is blocked */
 	struct gz_cast_cells occluded; /**< of struct gz_occlusion */

@@ -55,9 +55,9 @@ struct gz_ray_params {
 	double background[3];     /**< [0, 1] each */
 	struct gz_light light;
 	struct gz_clip_box clip;
-	struct gz_surface_look surface;    /**< for techniques that show surfaces */
-	struct gz_environment environment; /**< for techniques that show surfaces */
-	struct gz_slicing slicing;         /**< for techniques that draw slices */
+	struct gz_environment environment;
+	struct gz_surface_look surface; /**< for techniques that show surfaces */
+	struct gz_slicing slicing;      /**< for techniques that draw slices */
 };
 
 /** Table over the members of struct gz_ray_params that are no structs: "render.…". */
@@ -70,16 +70,16 @@ enum gz_ray_binding {
 	GZ_RAY_BINDING_RENDER,
 	GZ_RAY_BINDING_LIGHT,
 	GZ_RAY_BINDING_CLIP,
+	GZ_RAY_BINDING_ENVIRONMENT,
 	GZ_RAY_SAMPLE_BINDINGS,
 	GZ_RAY_BINDING_SURFACE = GZ_RAY_SAMPLE_BINDINGS,
-	GZ_RAY_BINDING_ENVIRONMENT,
 	GZ_RAY_SURFACE_BINDINGS,
 	GZ_RAY_BINDING_SLICES = GZ_RAY_SURFACE_BINDINGS,
 	GZ_RAY_BINDINGS,
 };
 
-/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "isosurface.…",
- *  "environment.…", "slices.…". The bindings have no flags and borrow @p rays. */
+/** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "environment.…",
+ *  "isosurface.…", "slices.…". The bindings have no flags and borrow @p rays. */
 void gz_ray_params_bind(struct gz_ray_params *rays,
 			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS]);
 

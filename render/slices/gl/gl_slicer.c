@@ -35,7 +35,7 @@ struct gz_gl_slicer {
 	unsigned vertices, no_vertices; /* vertex arrays: of the corners, and of nothing */
 	/* OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
 	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2];
-	unsigned hide;
+	unsigned hide, behind;
 	unsigned queries[QUERIES]; /* samples of each part; 0 = none made yet */
 	int query_count;           /* of this frame */
 	struct gz_gl_timer timer;
@@ -69,6 +69,8 @@ static void delete_programs(struct gz_gl_slicer *slicer)
 			glDeleteProgram(programs[i]);
 	if (slicer->hide)
 		glDeleteProgram(slicer->hide);
+	if (slicer->behind)
+		glDeleteProgram(slicer->behind);
 }
 
 static void delete_objects(struct gz_gl_slicer *slicer)
@@ -166,12 +168,12 @@ static bool make_program(unsigned *program, const struct gz_gl_shader *shaders, 
 	return *program != 0;
 }
 
-/* The program for slices of one level of detail; 0 if the driver refuses it. */
-static unsigned slice_program(const struct slicing *slicing, int level)
+/* The kind of samples of a level of detail. */
+static struct gz_gl_cast_kind sample_kind(const struct slicing *slicing, int level)
 {
-	struct gz_gl_slicer *slicer = slicing->slicer;
+	const struct gz_gl_slicer *slicer = slicing->slicer;
 	const struct gz_volume *volume = slicer->scene.volume;
-	const struct gz_gl_cast_kind kind = {
+	return (struct gz_gl_cast_kind) {
 		.texels = slicer->scene.levels[level].texels,
 		.type = volume->type,
 		.nearest = gz_ray_samples_nearest(slicing->rays, volume),
@@ -180,6 +182,13 @@ static unsigned slice_program(const struct slicing *slicing, int level)
 		.fine = slicer->scene.table->count > GZ_TRANSFER_TABLE_SIZE,
 		.coloured = volume->colours != NULL,
 	};
+}
+
+/* The program for slices of one level of detail; 0 if the driver refuses it. */
+static unsigned slice_program(const struct slicing *slicing, int level)
+{
+	struct gz_gl_slicer *slicer = slicing->slicer;
+	const struct gz_gl_cast_kind kind = sample_kind(slicing, level);
 	unsigned *program = &slicer->programs[kind.texels][kind.type][kind.nearest][kind.segments]
 					     [kind.shaded][kind.fine][kind.coloured];
 	if (!*program) {
@@ -191,11 +200,16 @@ static unsigned slice_program(const struct slicing *slicing, int level)
 	return *program;
 }
 
-static bool make_hide_program(struct gz_gl_slicer *slicer)
+/* The programs that fill whole targets. */
+static bool make_fill_programs(const struct slicing *slicing)
 {
-	struct gz_gl_shader hide[2];
+	struct gz_gl_slicer *slicer = slicing->slicer;
+	char defines[GZ_GL_CAST_DEFINES_SIZE];
+	struct gz_gl_shader hide[2], behind[2];
 	gz_gl_hide_shaders(hide);
-	return make_program(&slicer->hide, hide, 2, slicer->log);
+	gz_gl_behind_shaders(sample_kind(slicing, 0), &slicer->device, defines, behind);
+	return make_program(&slicer->hide, hide, 2, slicer->log) &&
+	       make_program(&slicer->behind, behind, 2, slicer->log);
 }
 
 /* Cut the box for the camera, and move the rays' origins to its first depth: places along rays are
@@ -218,6 +232,7 @@ static enum gz_result cut_volume(struct slicing *slicing, const struct gz_ray_fr
 		return result;
 	slicing->near_rays = *world;
 	const double near = slicer->cut.near;
+	slicing->frame.near = near;
 	for (int axis = 0; axis < 3; axis++) {
 		slicing->near_rays.origin00[axis] += near * world->direction00[axis];
 		slicing->near_rays.origin_dx[axis] += near * world->direction_dx[axis];
@@ -277,7 +292,7 @@ static enum gz_result prepare_slices(struct slicing *slicing, const struct gz_ra
 					     &slicing->levels, slicer->log);
 	if (result == GZ_OK)
 		result = reserve_targets(slicer);
-	if (result == GZ_OK && !make_hide_program(slicer))
+	if (result == GZ_OK && !make_fill_programs(slicing))
 		result = GZ_ERR_UNSUPPORTED;
 	if (result == GZ_OK)
 		upload_corners(slicer);
@@ -337,6 +352,17 @@ static void close_opaque(const struct gz_gl_slicer *slicer, const struct gz_gl_s
 	gz_gl_slice_target_open(target);
 }
 
+/* Draw the surroundings where light comes through all slices. */
+static void draw_behind_slices(const struct gz_gl_slicer *slicer,
+			       const struct gz_raster_layer *layer)
+{
+	glUseProgram(slicer->behind);
+	glUniform3f(GZ_GL_SLICES_LATTICE, (float)layer->from[0], (float)layer->from[1],
+		    (float)layer->spacing);
+	glBindVertexArray(slicer->no_vertices);
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
 /* Draw the slices of a layer, nearest first. */
 static enum gz_result draw_layer(const struct slicing *slicing, int index)
 {
@@ -361,6 +387,8 @@ static enum gz_result draw_layer(const struct slicing *slicing, int index)
 		if (slicing->rays->early_termination && end < cut->first[cut->count])
 			close_opaque(slicer, target);
 	}
+	if (slicing->rays->environment.kind != GZ_SURROUNDINGS_NONE)
+		draw_behind_slices(slicer, &slicer->layers.items[index]);
 	return GZ_OK;
 }
 

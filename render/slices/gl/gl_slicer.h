@@ -59,6 +59,12 @@ void gz_gl_slicer_destroy(struct gz_gl_slicer **slicer);
 void gz_gl_slice_shaders(struct gz_gl_cast_kind kind, const struct gz_gl_device *device,
 			 char defines[GZ_GL_CAST_DEFINES_SIZE], struct gz_gl_shader out_shaders[2]);
 
+/** The shaders that draw the surroundings behind the slices: the same for all kinds. @p defines is
+ *  filled and borrowed by both. */
+void gz_gl_behind_shaders(struct gz_gl_cast_kind kind, const struct gz_gl_device *device,
+			  char defines[GZ_GL_CAST_DEFINES_SIZE],
+			  struct gz_gl_shader out_shaders[2]);
+
 /** The shaders that close points hardly any light comes through. */
 void gz_gl_hide_shaders(struct gz_gl_shader out_shaders[2]);
 

@@ -6,6 +6,7 @@
 #define GZ_RENDER_SURFACE_CPU_SURFACE_KERNEL_H
 
 #include "render/raycast/cpu/simd_light.h"
+#include "render/raycast/cpu/simd_surroundings.h"
 #include "render/surface/cpu/surface_cast.h"
 #include "render/surface/cpu/surface_field.h"
 #include "render/surface/cpu/surface_glass.h"
@@ -59,6 +60,19 @@ SIMD void aim_shadows(const struct gz_surface_cast *cast, unsigned number, const
 		put_lanes(lanes.mask, place[axis], origins[axis] + first);
 }
 
+/* Note what the lanes of the mask mirror. */
+SIMD void mirror_lanes(const struct gz_surface_cast *cast, const struct meeting *at,
+		       const struct view *view, struct lanes lanes, struct packet *packet)
+{
+	const struct mirrored mirrored =
+		find_mirrored(&cast->frame.around, cast->frame.light.reflection, at->place,
+			      at->normal, view->eye);
+	put_lanes(lanes.mask, mirrored.share, packet->mirrored_share + lanes.first);
+	for (int channel = 0; channel < 3; channel++)
+		put_lanes(lanes.mask, mirrored.seen.channel[channel],
+			  packet->mirrored[channel] + lanes.first);
+}
+
 /* Light what the lanes of the mask have met, all of one mesh. Returns the lanes that the light
  * would reach if nothing stood between. */
 SIMD vm light_lanes(const struct gz_surface_cast *cast, unsigned number, struct lanes lanes,
@@ -89,6 +103,8 @@ SIMD vm light_lanes(const struct gz_surface_cast *cast, unsigned number, struct 
 	vi_store(hits->ids + first, vi_select(mask, vi_set((int32_t)mesh->id), id));
 	put_lanes(mask, shine.factor, packet->factor + first);
 	put_lanes(mask, shine.white, packet->white + first);
+	if (cast->frame.light.reflection > 0)
+		mirror_lanes(cast, &at, &view, lanes, packet);
 	for (int channel = 0; channel < 3; channel++)
 		put_lanes(mask, vf_set(mesh->colour[channel]), packet->colour[channel] + first);
 	if (!cast->frame.shadows)
@@ -109,8 +125,11 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 	vi_store(hits->ids + first, vi_set(0));
 	vf_store(packet->factor + first, vf_set(0));
 	vf_store(packet->white + first, vf_set(0));
-	for (int channel = 0; channel < 3; channel++)
+	vf_store(packet->mirrored_share + first, vf_set(0));
+	for (int channel = 0; channel < 3; channel++) {
 		vf_store(packet->colour[channel] + first, vf_set(0));
+		vf_store(packet->mirrored[channel] + first, vf_set(0));
+	}
 	/* Each mesh once that some lane has met: there may be hundreds of others. */
 	vm left = met;
 	unsigned last = cast->mesh_count;
@@ -167,7 +186,12 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 	vi pixel = vi_set((int32_t)0xFF000000);
 	for (int channel = 0; channel < 3; channel++) {
 		const vf colour = vf_load(packet->colour[channel] + first);
-		const vi byte = to_byte(vf_fma(colour, factor, white));
+		vf lit = vf_fma(colour, factor, white);
+		if (cast->frame.light.reflection > 0)
+			lit = lerp_lanes(vf_min(lit, vf_set(1)),
+					 vf_load(packet->mirrored[channel] + first),
+					 vf_load(packet->mirrored_share + first));
+		const vi byte = to_byte(lit);
 		pixel = vi_or(pixel, channel == 0   ? byte
 				     : channel == 1 ? vi_shift_left(byte, 8)
 						    : vi_shift_left(byte, 16));

@@ -19,6 +19,8 @@ struct packet {
 	alignas(64) float factor[GZ_SURFACE_RAYS];
 	float white[GZ_SURFACE_RAYS];
 	alignas(64) float colour[3][GZ_SURFACE_RAYS]; /* of what each ray has met */
+	/* With light.reflection: what it mirrors, and with which share. */
+	float mirrored[3][GZ_SURFACE_RAYS], mirrored_share[GZ_SURFACE_RAYS];
 };
 
 SIMD void store_mask(vm mask, int *out)

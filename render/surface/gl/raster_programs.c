@@ -50,7 +50,7 @@ void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_
 	*out_block = (struct gz_raster_block) {
 		.light_terms = { light->ambient, light->diffuse, light->specular,
 				 light->shininess },
-		.scale = { frame->world_per_mm },
+		.scale = { frame->world_per_mm, light->reflection },
 		.glass = { frame->refractive_index, frame->least_reflection },
 		.shadow_texel = { shadow->texel_mm, 1.0F / (float)edge,
 				  shadow->texel_mm / shadow->depth_mm },

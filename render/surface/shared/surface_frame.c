@@ -52,6 +52,7 @@ static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_fram
 		.diffuse = (float)light->diffuse,
 		.specular = (float)light->specular,
 		.shininess = (float)light->shininess,
+		.reflection = (float)light->reflection,
 	};
 	frame->background = UINT32_C(0xFF000000);
 	for (int i = 0; i < 3; i++) {

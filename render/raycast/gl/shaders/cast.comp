@@ -248,9 +248,9 @@ uint march_part(Ray ray, float k, float part, float voxel_lengths, inout Light l
 }
 #endif
 
-uint to_pixel(Light light)
+uint to_pixel(Light light, uvec2 at)
 {
-	vec3 colour = fma(vec3(light.through), background.xyz,
+	vec3 colour = fma(vec3(light.through), see_behind(vec2(at)),
 		light.colour * vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0));
 	uvec3 bytes = uvec3(fma(clamp(colour, 0.0, 1.0), vec3(255.0), vec3(0.5)));
 	return bytes.r | bytes.g << 8 | bytes.b << 16 | 0xFF000000U;
@@ -308,7 +308,7 @@ void main()
 		light.through = 0.0;
 	}
 #endif
-	store(tile, at, to_pixel(light));
+	store(tile, at, to_pixel(light, at));
 	if (samples > 0U)
 		atomicAdd(counts[gl_WorkGroupID.x % uint(COUNT_SLOTS)], samples);
 }

@@ -51,5 +51,7 @@ vec3 shade(vec3 colour, vec3 at)
 		ambient *= 1.0 - light_towards.w * occlusion_at(at - 0.5);
 	vec2 light = shine(normal, to_eye, halfway, light_towards.xyz, vec4(ambient, light_terms.yzw));
 	vec3 lit = min(fma(colour, vec3(light.x), full * light.y), full);
+	if (gradient_scale.w > 0.0)
+		lit = full * mirror_surroundings(around, gradient_scale.w, world_place(at), normal, to_eye, lit / full);
 	return fma(vec3(weight), lit - colour, colour);
 }

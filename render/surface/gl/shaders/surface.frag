@@ -60,5 +60,8 @@ void main()
 	vec2 light = shine(unit, -direction, halfway, light_towards.xyz, light_terms);
 	if (are.y != 0 && light.x > light_terms.x)
 		light = mix(vec2(light_terms.x, 0.0), light, light_share(facing, flat_normal));
-	colour = vec4(fma(own, vec3(light.x), vec3(light.y)), 1.0);
+	vec3 lit = fma(own, vec3(light.x), vec3(light.y));
+	if (scale.y > 0.0)
+		lit = mirror_surroundings(around, scale.y, place, unit, -direction, min(lit, vec3(1.0)));
+	colour = vec4(lit, 1.0);
 }

@@ -8,7 +8,7 @@ layout(std140, binding = BLOCK) uniform Surface
 	vec4 clip_least, clip_greatest;
 	vec4 light_towards; // unit vector
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
-	vec4 scale;         // world units of a mm
+	vec4 scale;         // world units of a mm; light.reflection
 	vec4 glass;         // refractive index; share that is reflected along the normal
 	vec4 shadow_rows[3];                // struct gz_raster_shadow
 	vec4 shadow_texel;                  // edge in mm; as a share of the map's; the same length as depth
