@@ -1,0 +1,286 @@
+/* Draws a mesh with stipples and prints what it took, and how many points appear and vanish while
+ * the view turns: illustration_drawing ball|ring|MESH WIDTHxHEIGHT OUT [POINTS [RADIUS [TURN]]].
+ * The light stays with the picture. Writes OUT.png and OUT.svg, 0.1 mm a pixel. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "base/vector.h"
+#include "base/workers.h"
+#include "drawing_planes.h"
+#include "render/illustration/stipple_points.h"
+#include "render/illustration/stipple_svg.h"
+#include "render/mesh/mesh_read.h"
+
+enum { TURNS = 20, COLUMNS = 512, ROWS = 256 };
+
+#define PI 3.14159265358979323846
+
+/* A mesh of a formula: a place for each of two angles, from 0 to 1. */
+typedef void formula_place(double u, double v, double place[3], double normal[3]);
+
+static void ball_place(double u, double v, double place[3], double normal[3])
+{
+	normal[0] = sin(PI * v) * cos(2 * PI * u);
+	normal[1] = sin(PI * v) * sin(2 * PI * u);
+	normal[2] = cos(PI * v);
+	for (int axis = 0; axis < 3; axis++)
+		place[axis] = 50 * normal[axis];
+}
+
+static void ring_place(double u, double v, double place[3], double normal[3])
+{
+	normal[0] = -cos(2 * PI * v) * cos(2 * PI * u);
+	normal[1] = -cos(2 * PI * v) * sin(2 * PI * u);
+	normal[2] = sin(2 * PI * v);
+	place[0] = 35 * cos(2 * PI * u) + 15 * normal[0];
+	place[1] = 35 * sin(2 * PI * u) + 15 * normal[1];
+	place[2] = 15 * normal[2];
+}
+
+static enum gz_result make_formula(formula_place *formula, struct gz_mesh *out_mesh)
+{
+	struct gz_mesh mesh;
+	const enum gz_result result = gz_mesh_allocate((uint64_t)(COLUMNS + 1) * (ROWS + 1),
+						       (uint64_t)2 * COLUMNS * ROWS, &mesh);
+	if (result != GZ_OK)
+		return result;
+	for (uint32_t row = 0; row <= ROWS; row++)
+		for (uint32_t column = 0; column <= COLUMNS; column++) {
+			const size_t vertex = (size_t)row * (COLUMNS + 1) + column;
+			double place[3], normal[3];
+			formula((double)column / COLUMNS, (double)row / ROWS, place, normal);
+			for (int axis = 0; axis < 3; axis++) {
+				mesh.positions[vertex][axis] = (float)place[axis];
+				mesh.normals[vertex][axis] = (float)normal[axis];
+			}
+		}
+	uint32_t(*triangle)[3] = mesh.triangles;
+	for (uint32_t row = 0; row < ROWS; row++)
+		for (uint32_t column = 0; column < COLUMNS; column++) {
+			const uint32_t a = row * (COLUMNS + 1) + column, b = a + COLUMNS + 1;
+			const uint32_t both[2][3] = { { a, b, a + 1 }, { a + 1, b, b + 1 } };
+			memcpy(triangle, both, sizeof both);
+			triangle += 2;
+		}
+	*out_mesh = mesh;
+	return GZ_OK;
+}
+
+struct drawing_request {
+	const char *what, *out;
+	int size[2];
+	size_t points;
+	double radius, turn_deg;
+};
+
+struct drawing_state {
+	struct gz_mesh mesh;
+	struct gz_stipple_points points;
+	struct gz_workers *workers;
+	struct drawing_planes planes;
+	struct gz_stipple_discs discs;
+	struct gz_stipple_sheet sheet;
+	double world_per_mm;
+	struct gz_camera camera;
+};
+
+static enum gz_result load_mesh(const char *what, const struct gz_log *log, struct gz_mesh *mesh)
+{
+	if (strcmp(what, "ball") == 0)
+		return make_formula(ball_place, mesh);
+	if (strcmp(what, "ring") == 0)
+		return make_formula(ring_place, mesh);
+	return gz_mesh_read(what, log, mesh);
+}
+
+static enum gz_result prepare_points(struct drawing_state *state, size_t count)
+{
+	struct gz_mesh_points points = { 0 };
+	const int64_t start_ns = gz_clock_now_ns();
+	enum gz_result result = gz_mesh_points_make(&state->mesh, count, state->workers, &points);
+	const int64_t made_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = gz_stipple_points_make(&state->mesh, &points, &state->points);
+	printf("triangles %zu points %zu made_ms %.0f ready_ms %.0f\n", state->mesh.triangle_count,
+	       points.count, gz_ns_to_ms(made_ns - start_ns),
+	       gz_ns_to_ms(gz_clock_now_ns() - made_ns));
+	gz_mesh_points_free(&points);
+	return result;
+}
+
+static void aim_camera(struct drawing_state *state)
+{
+	double least[3] = { INFINITY, INFINITY, INFINITY };
+	double greatest[3] = { -INFINITY, -INFINITY, -INFINITY };
+	gz_mesh_bound(&state->mesh, least, greatest);
+	double longest = 0;
+	for (int axis = 0; axis < 3; axis++)
+		longest = fmax(longest, greatest[axis] - least[axis]);
+	state->world_per_mm = 1 / longest;
+	state->camera = (struct gz_camera) { .up = { 0, 0, 1 }, .fov_deg = 30 };
+	for (int axis = 0; axis < 3; axis++)
+		state->camera.look_at[axis] =
+			(least[axis] + greatest[axis]) / 2 * state->world_per_mm;
+	memcpy(state->camera.eye, state->camera.look_at, sizeof state->camera.eye);
+	state->camera.eye[0] += 0.9;
+	state->camera.eye[1] += 1.8;
+	state->camera.eye[2] += 0.7;
+}
+
+static enum gz_result choose_points(struct drawing_state *state,
+				    const struct drawing_request *request)
+{
+	struct gz_ray_frame rays;
+	enum gz_result result = drawing_planes_make(&state->mesh, state->world_per_mm,
+						    &state->camera, request->size, &state->planes);
+	if (result == GZ_OK)
+		result = gz_camera_rays(&state->camera, request->size[0], request->size[1], &rays);
+	const struct gz_stipple_view view = { .rays = &rays,
+					      .world_per_mm = state->world_per_mm,
+					      .tone = &state->planes.tone,
+					      .depth = &state->planes.depth,
+					      .ids = &state->planes.ids,
+					      .id = 1,
+					      .size_px = request->radius,
+					      .tolerance_px = GZ_STIPPLE_TOLERANCE_PX };
+	state->discs.count = 0;
+	const int64_t start_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = gz_stipple_choose(&state->points, &view, state->workers, &state->discs);
+	printf("chosen %zu of %zu in %.2f ms\n", state->discs.count, state->points.count,
+	       gz_ns_to_ms(gz_clock_now_ns() - start_ns));
+	return result;
+}
+
+/* The mean difference of ink and shading map over what is seen, whole and by blocks of 32 px. */
+static void print_tone(const struct drawing_state *state)
+{
+	enum { BLOCK = 32 };
+	const struct gz_plane *tone = &state->planes.tone;
+	double worst = 0, squares = 0, mean = 0;
+	size_t blocks = 0;
+	for (int top = 0; top + BLOCK <= tone->height; top += BLOCK)
+		for (int left = 0; left + BLOCK <= tone->width; left += BLOCK) {
+			double sum = 0;
+			bool whole = true;
+			for (int y = top; y < top + BLOCK; y++)
+				for (int x = left; x < left + BLOCK; x++) {
+					whole &= state->planes.ids
+							 .words[(size_t)y * (size_t)tone->width +
+								(size_t)x] == 1;
+					sum += 1 - (double)gz_plane_value(tone, x, y) -
+					       state->sheet.ink[(size_t)y * state->sheet.stride +
+								(size_t)x] /
+						       255.0;
+				}
+			if (!whole)
+				continue;
+			sum /= BLOCK * BLOCK;
+			worst = fmax(worst, fabs(sum));
+			squares += sum * sum;
+			mean += sum;
+			blocks++;
+		}
+	printf("tone: wanted less drawn: mean %.4f rms %.4f worst %.4f over %zu blocks\n",
+	       mean / (double)blocks, sqrt(squares / (double)blocks), worst, blocks);
+}
+
+static enum gz_result draw_sheet(struct drawing_state *state, const struct drawing_request *request,
+				 const struct gz_log *log)
+{
+	struct gz_image image = { 0 };
+	struct gz_stipple_svg svg;
+	char path[GZ_PATH_SIZE];
+	enum gz_result result =
+		gz_stipple_sheet_clear(&state->sheet, request->size[0], request->size[1]);
+	const int64_t start_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = gz_stipple_sheet_add_discs(&state->sheet, state->discs.discs,
+						    state->discs.count, state->workers);
+	printf("drawn in %.2f ms\n", gz_ns_to_ms(gz_clock_now_ns() - start_ns));
+	if (result == GZ_OK)
+		result = gz_stipple_sheet_to_image(&state->sheet, &image);
+	if (result == GZ_OK)
+		result = gz_text_print(path, sizeof path, "%s.png", request->out);
+	if (result == GZ_OK)
+		result = gz_image_write_png(&image, path, log);
+	if (result == GZ_OK)
+		result = gz_text_print(path, sizeof path, "%s.svg", request->out);
+	if (result == GZ_OK)
+		result = gz_stipple_svg_open(&svg, path, request->size, 0.1, log);
+	if (result == GZ_OK) {
+		gz_stipple_svg_add_discs(&svg, state->discs.discs, state->discs.count);
+		result = gz_stipple_svg_close(&svg);
+	}
+	gz_image_free(&image);
+	return result;
+}
+
+static enum gz_result run_drawing(struct drawing_state *state,
+				  const struct drawing_request *request, const struct gz_log *log)
+{
+	enum gz_result result = load_mesh(request->what, log, &state->mesh);
+	if (result == GZ_OK)
+		result = gz_workers_create(0, &state->workers);
+	if (result == GZ_OK)
+		result = prepare_points(state, request->points);
+	if (result != GZ_OK)
+		return result;
+	aim_camera(state);
+	gz_camera_turn(&state->camera, request->turn_deg);
+	result = choose_points(state, request);
+	if (result == GZ_OK)
+		result = draw_sheet(state, request, log);
+	if (result == GZ_OK)
+		print_tone(state);
+	return result;
+}
+
+static bool parse_request(int argc, char **argv, struct drawing_request *out_request)
+{
+	long long points = 1000000;
+	double radius = 1.2, turn_deg = 0;
+	struct drawing_request request = { 0 };
+	if (argc < 4 || argc > 7 ||
+	    sscanf(argv[2], "%dx%d", &request.size[0], &request.size[1]) != 2)
+		return false;
+	if ((argc > 4 && !gz_number_parse_whole(argv[4], &points)) ||
+	    (argc > 5 && !gz_number_parse(argv[5], &radius)) ||
+	    (argc > 6 && !gz_number_parse(argv[6], &turn_deg)) || points < 1)
+		return false;
+	request.what = argv[1];
+	request.out = argv[3];
+	request.points = (size_t)points;
+	request.radius = radius;
+	request.turn_deg = turn_deg;
+	*out_request = request;
+	return true;
+}
+
+int main(int argc, char **argv)
+{
+	struct gz_log log;
+	struct drawing_request request;
+	struct drawing_state state = { 0 };
+	gz_log_init(&log, NULL, NULL, "*:warn");
+	if (!parse_request(argc, argv, &request)) {
+		fprintf(stderr, "illustration_drawing ball|ring|MESH WIDTHxHEIGHT OUT [POINTS "
+				"[RADIUS [TURN_DEG]]]\n");
+		return 2;
+	}
+	const enum gz_result result = run_drawing(&state, &request, &log);
+	if (result != GZ_OK)
+		fprintf(stderr, "illustration_drawing: %s\n", gz_result_text(result));
+	gz_mesh_free(&state.mesh);
+	gz_stipple_points_free(&state.points);
+	gz_workers_destroy(&state.workers);
+	drawing_planes_free(&state.planes);
+	gz_stipple_discs_free(&state.discs);
+	gz_stipple_sheet_free(&state.sheet);
+	return result == GZ_OK ? 0 : 1;
+}
