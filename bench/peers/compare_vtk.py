@@ -133,16 +133,22 @@ def make_mapper(kind, image, step):
     return mapper
 
 
+def make_volume(scene, kind):
+    image = load_volume(scene)
+    voxel = place_volume(image)
+    volume = vtk.vtkVolume()
+    step = voxel / float(scene.text("render", "ray_sampling_rate", "1.5"))
+    volume.SetMapper(make_mapper(kind, image, step))
+    volume.SetProperty(load_transfer(scene, image, voxel))
+    return volume
+
+
 class VtkWindow:
-    def __init__(self, scene, kind, width, height):
-        image = load_volume(scene)
-        voxel = place_volume(image)
-        volume = vtk.vtkVolume()
-        step = voxel / float(scene.text("render", "ray_sampling_rate", "1.5"))
-        volume.SetMapper(make_mapper(kind, image, step))
-        volume.SetProperty(load_transfer(scene, image, voxel))
+    """What is shown, in our world, seen by the scene's camera."""
+
+    def __init__(self, scene, shown, width, height):
         renderer = vtk.vtkRenderer()
-        renderer.AddVolume(volume)
+        renderer.AddViewProp(shown)
         renderer.SetBackground(*scene.numbers("render", "background", "0 0 0"))
         self.window = vtk.vtkRenderWindow()
         self.window.SetOffScreenRendering(1)
@@ -187,7 +193,8 @@ def read_picture(path):
 
 
 def gazeview(arguments, method, gaze):
-    """Times of three frames, and the picture of the scene's own camera."""
+    """Times of three frames, and the picture of the scene's own camera. Arguments: gazeview, scene, size and
+    backend."""
     with tempfile.TemporaryDirectory() as folder:
         times, path = run_gazeview(arguments.gazeview, arguments.scene, arguments.size, arguments.backend, method,
                                    gaze, 4, folder)
@@ -195,7 +202,7 @@ def gazeview(arguments, method, gaze):
 
 
 def measure(arguments, peer):
-    """All sides in turn, and the last picture of `standard`."""
+    """All sides in turn, as often as arguments.pairs says, and the last picture of `standard`."""
     series = Series()
     for _ in range(arguments.pairs):
         series.peer += [peer.frame_ms() for _ in range(3)]
@@ -209,7 +216,8 @@ def measure(arguments, peer):
 def main():
     arguments = read_arguments()
     width, height = [int(side) for side in arguments.size.split("x")]
-    peer = VtkWindow(Scene(arguments.scene), arguments.vtk, width, height)
+    scene = Scene(arguments.scene)
+    peer = VtkWindow(scene, make_volume(scene, arguments.vtk), width, height)
     their_picture = peer.picture()
     series, our_picture = measure(arguments, peer)
     error = numpy.mean((our_picture - their_picture) ** 2)

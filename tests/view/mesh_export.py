@@ -107,6 +107,18 @@ class MeshExport(unittest.TestCase):
         with open(self.path(name), "rb") as source:
             return done, source.read()
 
+    def test_scene_that_shows_an_isosurface_says_which(self):
+        with open(self.path("a.scene"), "w", encoding="utf-8") as out:
+            out.write("[volume]\nfile = ball.nrrd\n[transfer]\nfile = a.tf\n[render]\ntechnique = isosurface\n"
+                      "[isosurface]\nisovalue = 4.5\n")
+        with open(self.path("a.tf"), "w", encoding="utf-8") as out:
+            out.write("0 0 0 0 0\n1 1 1 1 1\n")
+        by_scene = run(GAZEVIEW, self.path("a.scene"), "--write-mesh", self.path("a.ply"))
+        self.assertEqual((by_scene.returncode, by_scene.stderr), (0, ""))
+        self.good("b.ply", 4.5)
+        with open(self.path("a.ply"), "rb") as a, open(self.path("b.ply"), "rb") as b:
+            self.assertEqual(a.read(), b.read())
+
     def refused(self, done, *words):
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stdout, "")

@@ -6,6 +6,8 @@
 
 #include "render/mesh/mesh_file.h"
 #include "render/mesh/mesh_measure.h"
+#include "render/scene/scene_settings.h"
+#include "render/surface/isosurface_technique.h"
 #include "view/capture/mesh_output.h"
 #include "view/capture/output.h"
 #include "view/headless/headless.h"
@@ -66,13 +68,15 @@ static enum gz_result write_surface(const struct gz_view_options *options,
 				    const struct gz_scene *scene, const struct gz_log *log)
 {
 	struct gz_mesh mesh;
-	if (!gz_view_option_given(options, "isovalue")) {
+	const bool given = gz_view_option_given(options, "isovalue");
+	if (!given && !gz_scene_draws_by(&scene->settings, &gz_isosurface_technique)) {
 		gz_err(log, "--write-mesh: --isovalue is missing; give the data value where the "
 			    "surface lies");
 		return GZ_ERR_INVAL;
 	}
-	enum gz_result r = gz_mesh_output_make(&scene->volume, options->isovalue, options->threads,
-					       log, &mesh);
+	const double isovalue = given ? options->isovalue : scene->settings.rays.surface.isovalue;
+	enum gz_result r =
+		gz_mesh_output_make(&scene->volume, isovalue, options->threads, log, &mesh);
 	if (r != GZ_OK)
 		return r;
 	r = gz_mesh_write(&mesh, options->write_mesh, log);
