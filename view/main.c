@@ -37,6 +37,8 @@ static int run_mode(struct gz_view_options *options, const struct gz_log *log,
 		return gz_view_targets(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->sitting.file[0] && options->headless)
 		return list_trials(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
+	if (options->list_objects)
+		return gz_view_list_objects(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->list_series)
 		return gz_view_list_series(options, log) == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 	if (options->write_volume[0])

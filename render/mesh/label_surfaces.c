@@ -16,6 +16,9 @@ const struct gz_option gz_label_options[] = {
 	{ "labels.smoothing", GZ_OPTION_INT, offsetof(struct gz_label_look, smoothing), 0,
 	  GZ_LABEL_SMOOTHING_MAX, .preset = "12",
 	  .help = "surfaces of labels: pairs of smoothing steps; 0 = stairs" },
+	{ "labels.names", GZ_OPTION_STRING, offsetof(struct gz_label_look, names),
+	  .max = GZ_PATH_SIZE, .preset = "",
+	  .help = "file with names and colours of labels; without it the one beside the volume" },
 };
 const size_t gz_label_option_count = sizeof gz_label_options / sizeof gz_label_options[0];
 
@@ -47,6 +50,7 @@ struct splitting {
 	const struct gz_label_index *index;
 	const struct gz_label_net *net;
 	const double *spacing;
+	const struct gz_label_names *names;   /* NULL: none */
 	size_t (*offsets)[GZ_LABELS_MAX + 2]; /* of each chunk, by label */
 	uint32_t *uses;                       /* of faces, by label */
 	size_t *first;                        /* of each label in uses, and the end */
@@ -220,6 +224,19 @@ static void make_label_normals(struct gz_mesh *mesh)
 	}
 }
 
+/* What the label is called, and its colour. */
+static void describe_label(const struct splitting *splitting, struct gz_label_surface *surface)
+{
+	const struct gz_label_name *known =
+		splitting->names ? gz_label_names_find(splitting->names, surface->number) : NULL;
+	gz_label_colour(surface->number, surface->colour);
+	if (!known)
+		return;
+	memcpy(surface->name, known->name, sizeof surface->name);
+	if (known->has_colour)
+		memcpy(surface->colour, known->colour, sizeof surface->colour);
+}
+
 static void split_label(void *user, size_t label, int worker)
 {
 	const struct splitting *splitting = user;
@@ -228,7 +245,7 @@ static void split_label(void *user, size_t label, int worker)
 	struct gz_label_surface *surface = &splitting->surfaces->items[label];
 	surface->number = splitting->index->numbers[label];
 	surface->voxels = splitting->index->voxels[label];
-	gz_label_colour(surface->number, surface->colour);
+	describe_label(splitting, surface);
 	const uint64_t vertices = number_vertices(splitting, label, local);
 	splitting->results[label] =
 		gz_mesh_allocate(vertices, 2 * (uint64_t)(end - first), &surface->mesh);
@@ -292,6 +309,7 @@ static enum gz_result make_surfaces(const struct gz_label_request *request,
 		struct splitting splitting = { .index = index,
 					       .net = &net,
 					       .spacing = request->volume->spacing,
+					       .names = request->names,
 					       .surfaces = surfaces };
 		result = split_net(&splitting, workers);
 	}

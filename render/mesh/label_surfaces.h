@@ -32,6 +32,7 @@
 #include "base/workers.h"
 #include "render/data/volume.h"
 #include "render/mesh/label_index.h"
+#include "render/mesh/label_names.h"
 #include "render/mesh/mesh.h"
 
 /** Taubin's two factors: his example, whose pass band ends at 1 / .5 - 1 / .53 = .11. */
@@ -44,7 +45,8 @@
 
 /** How surfaces of labels are made. */
 struct gz_label_look {
-	int smoothing; /**< pairs of smoothing steps; 0 = stairs with blunt edges */
+	int smoothing;            /**< pairs of smoothing steps; 0 = stairs with blunt edges */
+	char names[GZ_PATH_SIZE]; /**< file of names and colours; empty: one beside the volume */
 };
 
 /** Table over struct gz_label_look: "labels.…". */
@@ -53,9 +55,10 @@ extern const size_t gz_label_option_count;
 
 /** The surface of one label. */
 struct gz_label_surface {
-	int32_t number;  /**< of the label, as in the volume */
-	uint64_t voxels; /**< that it has */
-	float colour[3]; /**< gz_label_colour() */
+	int32_t number;                /**< of the label, as in the volume */
+	uint64_t voxels;               /**< that it has */
+	float colour[3];               /**< of the names, else gz_label_colour() */
+	char name[GZ_LABEL_NAME_SIZE]; /**< empty: none is known */
 	/** Triangles that face no label come first; the others are its shared ones. */
 	struct gz_mesh mesh;
 };
@@ -69,8 +72,9 @@ struct gz_label_surfaces {
 /** What surfaces of labels are made of. All pointers are borrowed. */
 struct gz_label_request {
 	const struct gz_volume *volume;
-	const char *name; /**< the volume's in messages */
-	int smoothing;    /**< as in struct gz_label_look */
+	const char *name;                   /**< the volume's in messages */
+	int smoothing;                      /**< as in struct gz_label_look */
+	const struct gz_label_names *names; /**< NULL: none */
 };
 
 /**

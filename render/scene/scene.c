@@ -161,21 +161,49 @@ static enum gz_result load_label_volume(const struct scene_loader *loader,
 			      loader->log, out_volume);
 }
 
+/* The names and colours of an object's labels: those of labels.names, or of a file beside the
+ * volume, which may be of another kind. */
+static enum gz_result load_label_names(const struct scene_loader *loader,
+				       const struct gz_scene_object *object,
+				       struct gz_label_names *out_names)
+{
+	const char *named = loader->settings->labels.names;
+	char path[GZ_PATH_SIZE], beside[GZ_PATH_SIZE];
+	enum gz_result result = find_named_file(loader, named[0] ? "labels.names" : object->section,
+						named[0] ? named : object->labels, path);
+	if (result != GZ_OK)
+		return result;
+	if (named[0])
+		return gz_label_names_read(path, loader->log, out_names);
+	if (!gz_label_names_beside(path, beside))
+		return GZ_OK;
+	result = gz_label_names_read(beside, NULL, out_names);
+	gz_debug(loader->log, "%s: %zu names of labels%s", beside, out_names->count,
+		 result == GZ_OK ? "" : ": it is no file of names");
+	return result == GZ_ERR_NO_MEM ? result : GZ_OK;
+}
+
 static enum gz_result load_labels_of(const struct scene_loader *loader,
 				     const struct gz_scene_object *object,
 				     struct gz_label_surfaces *out_surfaces)
 {
 	struct gz_volume volume;
 	struct gz_workers *workers = NULL;
-	enum gz_result result = load_label_volume(loader, object, &volume);
-	if (result != GZ_OK)
+	struct gz_label_names names = { 0 };
+	enum gz_result result = load_label_names(loader, object, &names);
+	if (result == GZ_OK)
+		result = load_label_volume(loader, object, &volume);
+	if (result != GZ_OK) {
+		gz_label_names_free(&names);
 		return result;
+	}
 	/* Without further threads the calling one does all. */
 	(void)gz_workers_create(0, &workers);
 	const struct gz_label_request request = {
 		.volume = &volume,
 		.name = object->labels,
 		.smoothing = loader->settings->labels.smoothing,
+		.names = &names,
 	};
 	const int64_t start_ns = gz_clock_now_ns();
 	result = gz_label_surfaces_make(&request, workers, loader->log, out_surfaces);
@@ -184,6 +212,7 @@ static enum gz_result load_labels_of(const struct scene_loader *loader,
 		 gz_ns_to_ms(gz_clock_now_ns() - start_ns));
 	gz_workers_destroy(&workers);
 	gz_volume_free(&volume);
+	gz_label_names_free(&names);
 	if (result == GZ_OK && out_surfaces->count == 0)
 		gz_warn(loader->log, "%s: %s: %s holds no label: every voxel is 0", loader->name,
 			object->section, object->labels);
@@ -483,6 +512,8 @@ enum gz_result gz_scene_try(const struct gz_scene_source *source, const struct g
 		if (file[0])
 			result = find_named_file(&loader, item->section, file, path);
 	}
+	if (result == GZ_OK && settings.labels.names[0])
+		result = find_named_file(&loader, "labels.names", settings.labels.names, path);
 	if (result == GZ_OK)
 		*out_settings = settings;
 	return result;
@@ -520,6 +551,7 @@ static void list_volumes(const struct gz_scene *scene, struct gz_object *out_obj
 			continue;
 		object.technique = gz_scene_technique(settings, item);
 		object.id = item == shown ? 1 : (uint32_t)i + 2;
+		object.name = gz_scene_object_name(item);
 		list_object(&object, out_objects, room, count);
 	}
 }
@@ -527,6 +559,16 @@ static void list_volumes(const struct gz_scene *scene, struct gz_object *out_obj
 uint32_t gz_scene_label_id(size_t object, size_t label)
 {
 	return (uint32_t)(label + 1) << 8 | (uint32_t)(object + 2);
+}
+
+const struct gz_label_surface *gz_scene_label_of(const struct gz_scene *scene, uint32_t id)
+{
+	const size_t place = id >> 8, object = id & 255;
+	if (!scene->labels || place < 1 || object < 2 ||
+	    object - 2 >= scene->settings.objects.count)
+		return NULL;
+	const struct gz_label_surfaces *labels = &scene->labels[object - 2];
+	return place <= labels->count ? &labels->items[place - 1] : NULL;
 }
 
 /* Append each label of an object. */
@@ -543,6 +585,7 @@ static void list_labels(const struct gz_scene *scene, size_t index, struct gz_ob
 			.transfer = &scene->transfer,
 			.mesh = &labels->items[i].mesh,
 			.colour = labels->items[i].colour,
+			.name = labels->items[i].name[0] ? labels->items[i].name : NULL,
 		};
 		list_object(&object, out_objects, room, count);
 	}
@@ -562,6 +605,7 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
 			.volume = &scene->volume,
 			.transfer = &scene->transfer,
 			.mesh = &scene->meshes[i],
+			.name = gz_scene_object_name(item),
 		};
 		if (item->mesh[0] && item->visible)
 			list_object(&object, out_objects, room, &count);

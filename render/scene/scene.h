@@ -156,6 +156,9 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
  *  plus 2 and the place of that object among the settings'. So the lowest byte tells the object. */
 uint32_t gz_scene_label_id(size_t object, size_t label);
 
+/** The label with a number of gz_scene_label_id(); NULL: the object is none. Borrowed. */
+const struct gz_label_surface *gz_scene_label_of(const struct gz_scene *scene, uint32_t id);
+
 /** Free what the scene holds and zero it. */
 void gz_scene_free(struct gz_scene *scene);
 

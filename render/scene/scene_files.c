@@ -208,6 +208,8 @@ static enum gz_result move_files(struct gz_scene_settings *settings, const struc
 {
 	enum gz_result result = move_field(move, "volume.file", settings->volume_file);
 	if (result == GZ_OK)
+		result = move_field(move, "labels.names", settings->labels.names);
+	if (result == GZ_OK)
 		result = move_field(move, "transfer.file", settings->transfer_file);
 	if (result == GZ_OK)
 		result = move_list(move, settings->transfer_also);

@@ -44,6 +44,7 @@ struct gz_object {
 	const struct gz_mesh *mesh;         /**< shown in place of the volume, in whose frame it
 						 is; NULL: none */
 	const float *colour; /**< red, green and blue of a mesh, [0, 1]; NULL: the settings' */
+	const char *name;    /**< for lists and messages; NULL: none */
 	/** Numbers that the owner increases when it changes what the pointers above lead to. */
 	uint64_t data_revision, transfer_revision;
 };

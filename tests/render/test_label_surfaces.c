@@ -40,7 +40,7 @@ static struct gz_label_surfaces make_surfaces_of(const struct gz_volume *volume,
 {
 	struct gz_label_surfaces surfaces;
 	struct gz_workers *workers = NULL;
-	const struct gz_label_request request = { volume, "labels", smoothing };
+	const struct gz_label_request request = { volume, "labels", smoothing, NULL };
 	if (threads > 0)
 		assert_int_equal(gz_workers_create(threads, &workers), GZ_OK);
 	assert_int_equal(gz_label_surfaces_make(&request, workers, NULL, &surfaces), GZ_OK);
@@ -349,7 +349,7 @@ static enum gz_result try_labels(enum gz_voxel_type type, label_formula *formula
 				 struct gz_label_surfaces *out)
 {
 	struct gz_volume volume = make_labels(12, type, formula);
-	const struct gz_label_request request = { &volume, "labels", 10 };
+	const struct gz_label_request request = { &volume, "labels", 10, NULL };
 	const enum gz_result result = gz_label_surfaces_make(&request, NULL, NULL, out);
 	gz_volume_free(&volume);
 	return result;

@@ -80,6 +80,36 @@ static void hidden_labels_and_those_beside_a_volume_are_listed_right(void **stat
 	gz_scene_free(&scene);
 }
 
+static void names_of_a_file_are_those_of_objects(void **state)
+{
+	(void)state;
+	static const char table[] = "5 left 255 0 51 0\n6 none 1 1 1 0\n";
+	files_write("l.txt", table, sizeof table - 1);
+	struct gz_scene scene = loaded(BLOCKS);
+	struct gz_object objects[4];
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 4), 2);
+	assert_string_equal(objects[0].name, "left");
+	assert_float_equal(objects[0].colour[2], 0.2, 1e-6);
+	assert_null(objects[1].name);
+	assert_ptr_equal(gz_scene_label_of(&scene, objects[1].id), &scene.labels[0].items[1]);
+	assert_null(gz_scene_label_of(&scene, gz_scene_label_id(0, 2)));
+	assert_null(gz_scene_label_of(&scene, gz_scene_label_id(1, 0)));
+	assert_null(gz_scene_label_of(&scene, 1));
+	gz_scene_free(&scene);
+	/* A file that is named counts more; one that only lies there need not be of names. */
+	files_write("named", "9 right\n", 8);
+	scene = loaded(BLOCKS "[labels]\nnames = named\n");
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 4), 2);
+	assert_null(objects[0].name);
+	assert_string_equal(objects[1].name, "right");
+	gz_scene_free(&scene);
+	files_write("l.txt", "notes\n", 6);
+	scene = loaded(BLOCKS);
+	assert_null(scene.labels[0].items[0].name[0] ? "named" : NULL);
+	gz_scene_free(&scene);
+	remove(files_write("l.txt", "", 0));
+}
+
 /* A picture of the scene by rays at surfaces; false without Embree. */
 enum { PICTURE_PX = 48 };
 
@@ -188,6 +218,9 @@ static void volumes_that_are_no_labels_are_refused_by_name(void **state)
 			 values, sizeof values);
 	check_refusal("[object a]\nlabels = f.nrrd\ntechnique = isosurface\n",
 		      "it has the value 2.5");
+	files_write("named", "notes\n", 6);
+	check_refusal(BLOCKS "[labels]\nnames = named\n", "named:1: no names of labels");
+	check_refusal(BLOCKS "[labels]\nnames = nowhere\n", "labels.names: nowhere is neither");
 	const uint8_t nothing[2] = { 0, 0 };
 	files_write_text("n.nrrd",
 			 "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 1 1\nencoding: raw\n\n",
@@ -201,6 +234,7 @@ TEST_SUITE(scene_labels)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(each_label_is_an_object_with_a_colour),
 		cmocka_unit_test(hidden_labels_and_those_beside_a_volume_are_listed_right),
+		cmocka_unit_test(names_of_a_file_are_those_of_objects),
 		cmocka_unit_test(labels_are_drawn_in_their_colours),
 		cmocka_unit_test(face_between_neighbours_has_the_colour_of_the_far_one),
 		cmocka_unit_test(volumes_that_are_no_labels_are_refused_by_name),

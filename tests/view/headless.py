@@ -13,7 +13,7 @@ import tempfile
 import time
 import unittest
 
-from picture import PATIENCE_S, read_png, run, write_scene
+from picture import PATIENCE_S, read_png, run, write_labels, write_scene
 
 GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
@@ -440,6 +440,15 @@ class Headless(unittest.TestCase):
             self.assertEqual("camera.up" in done.stderr, not counts)
             pictures.append(read_png(self.path("up.png")))
         self.assertTrue(pictures[0] == pictures[1] == pictures[2])
+
+    def test_objects_are_listed_with_their_names(self):
+        done = run(GAZEVIEW, "--list-objects", write_labels(self.place.name))
+        self.assertEqual(done.stdout.splitlines()[0],
+                         "label 5 voxels 48 technique isosurface colour #ff0033 left lobe")
+        self.assertRegex(done.stdout.splitlines()[1],
+                         "^label 9 voxels 48 technique isosurface colour #[0-9a-f]{6}$")
+        done = run(GAZEVIEW, "--list-objects", SCENE)
+        self.assertEqual(done.stdout, "volume 64 x 64 x 64 technique raycast\n")
 
     def test_signal_ends_the_run_between_frames_and_the_statistics_parse(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):

@@ -31,6 +31,25 @@ def write_scene(folder, scenes):
     return path
 
 
+def write_labels(folder, *lines):
+    """A scene of two labels side by side, 5 with a name and a colour and 9 without. -> its path"""
+    voxels = bytearray(8 * 6 * 6)
+    for z in range(1, 5):
+        for y in range(1, 5):
+            for x in range(1, 7):
+                voxels[(z * 6 + y) * 8 + x] = 5 if x < 4 else 9
+    with open(os.path.join(folder, "two.nrrd"), "wb") as out:
+        out.write(b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 6 6\nencoding: raw\n"
+                  b"spacings: 2 2 2\n\n" + bytes(voxels))
+    with open(os.path.join(folder, "two.txt"), "w", encoding="utf-8") as out:
+        out.write("5 left lobe 255 0 51 0\n")
+    path = os.path.join(folder, "two.scene")
+    with open(path, "w", encoding="utf-8") as out:
+        out.write("\n".join(("[object lobes]", "labels = two.nrrd", "technique = isosurface",
+                             *lines, "")))
+    return path
+
+
 class Picture:
     """An 8-bit RGB picture, rows of bytes."""
 

@@ -8,8 +8,8 @@ import re
 import sys
 import unittest
 
-from picture import PATIENCE_S, run
-from window_case import CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, SCENE, SIZE, WindowCase
+from picture import PATIENCE_S, run, write_labels
+from window_case import CORNER_HEIGHT, GAZEVIEW, LINE_HEIGHT, PLACE, SCENE, SIZE, WindowCase
 
 WIDTH, HEIGHT = SIZE
 MIDDLE = WIDTH // 2
@@ -21,8 +21,8 @@ COARSE = (*STILL, "--method", "acuity", "--foveation.acuity_slope", "0.1")
 
 
 class PictureWindow(WindowCase):
-    def start(self, *more):
-        super().start(*more)
+    def start(self, *more, **options):
+        super().start(*more, **options)
         self.move(WIDTH - 5, LINE_HEIGHT + 20)  # the window with the mouse has the keyboard
     def part(self, picture, left, right, top=TOP, bottom=BOTTOM):
         return picture.part(left, top, right, bottom)
@@ -143,6 +143,22 @@ class PictureWindow(WindowCase):
             self.tool("key", "v", "v")
             self.until(lambda p: any(self.part(p, *fovea)), "split")
             self.stop()
+
+    def test_labels_are_listed_with_their_colours(self):
+        scene = write_labels(PLACE.name, "[light]", "ambient = 0.3", "diffuse = 0.5",
+                             "specular = 0")
+        self.start("--gaze", "0.5,0.5", scene=scene)
+        colour = (255, 0, 51)
+
+        def listed(picture):
+            return sum(picture.at(x, y) == colour for x in range(8, 60)
+                       for y in range(LINE_HEIGHT, 160))
+
+        self.assertEqual(listed(self.rest()), 0)
+        self.tool("key", "a")
+        self.until(lambda p: listed(p) > 80, "the list")
+        self.tool("key", "Escape")
+        self.until(lambda p: listed(p) == 0, "no list")
 
     def test_still_split_takes_no_processor_time(self):
         self.start(*STILL, "--method", "acuity", "--view.compare", "split")

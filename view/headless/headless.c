@@ -550,9 +550,9 @@ static enum gz_result apply_options(void *user, struct gz_scene_settings *settin
 	return gz_view_options_apply(user, settings);
 }
 
-enum gz_result gz_view_load_volume(const struct gz_view_options *options,
-				   const struct gz_loading *where, const struct gz_log *log,
-				   struct gz_scene *out_scene)
+static enum gz_result load_with_bar(const struct gz_view_options *options,
+				    const struct gz_loading *where, bool volume_alone,
+				    const struct gz_log *log, struct gz_scene *out_scene)
 {
 	struct gz_loading_bar bar;
 	gz_loading_bar_begin(&bar, log);
@@ -567,11 +567,24 @@ enum gz_result gz_view_load_volume(const struct gz_view_options *options,
 		.change = apply_options,
 		.user = (void *)options, /* which is only read */
 		.loading = &bar.loading,
-		.volume_alone = true,
+		.volume_alone = volume_alone,
 	};
 	const enum gz_result r = gz_scene_open(&request, log, out_scene);
 	gz_loading_bar_end(&bar);
 	return r;
+}
+
+enum gz_result gz_view_load_volume(const struct gz_view_options *options,
+				   const struct gz_loading *where, const struct gz_log *log,
+				   struct gz_scene *out_scene)
+{
+	return load_with_bar(options, where, true, log, out_scene);
+}
+
+enum gz_result gz_view_load_scene(const struct gz_view_options *options, const struct gz_log *log,
+				  struct gz_scene *out_scene)
+{
+	return load_with_bar(options, NULL, false, log, out_scene);
 }
 
 static enum gz_result write_to(const struct gz_view_options *options,

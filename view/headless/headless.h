@@ -66,6 +66,20 @@ enum gz_result gz_view_load_volume(const struct gz_view_options *options,
 				   const struct gz_loading *where, const struct gz_log *log,
 				   struct gz_scene *out_scene);
 
+/** Load all of the scene that the options name, with a bar. @param[out] out_scene  written on
+ * GZ_OK; gz_scene_free() @return the results of gz_scene_open() */
+enum gz_result gz_view_load_scene(const struct gz_view_options *options, const struct gz_log *log,
+				  struct gz_scene *out_scene);
+
+/**
+ * gazeview --list-objects: print what the scene that the options name shows, one object a line, on
+ * stdout. Each label of a label volume is an object, with its name if that is known.
+ *
+ * @return the results of gz_scene_open(); logged except GZ_ERR_CANCELLED, which a signal causes
+ */
+enum gz_result gz_view_list_objects(const struct gz_view_options *options,
+				    const struct gz_log *log);
+
 /**
  * gazeview --list-series: print the DICOM series of the folder or file that the options name as
  * their scene, one a line, on stdout.

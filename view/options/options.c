@@ -124,6 +124,9 @@ const struct gz_option gz_view_option_table[] = {
 		  "scene's" },
 	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE,
 	  .help = "UID of the series of a DICOM folder to show; --list-series prints them" },
+	{ "list-objects", GZ_OPTION_BOOL, AT(list_objects), .preset = "false",
+	  .help = "print what the scene shows, each label of a label volume by its name, and "
+		  "exit" },
 	{ "list-series", GZ_OPTION_BOOL, AT(list_series), .preset = "false",
 	  .help = "print the series of a DICOM folder or DICOMDIR with their UIDs, and exit" },
 	{ "volume.resample", GZ_OPTION_CHOICE, AT(volume_resample), .choices = gz_resampling_names,
@@ -158,6 +161,7 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 			    : options->headless      ? "--headless"
 			    : options->record[0]     ? "--record"
 			    : options->replay[0]     ? "--replay"
+			    : options->list_objects  ? "--list-objects"
 			    : options->list_series   ? "--list-series"
 			    : options->write_mesh[0] ? "--write-mesh"
 						     : NULL;
@@ -171,32 +175,12 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",
-		"size",
-		"gaze",
-		"frames",
-		"turn",
-		"display-px",
-		"display-mm",
-		"distance-mm",
-		"write-volume",
-		"record",
-		"transfer.file",
-		"volume.dims",
-		"volume.type",
-		"volume.endian",
-		"volume.spacing",
-		"volume.series",
-		"time-point",
-		"play",
-		"volume.channels",
-		"volume.opacity",
-		"list-series",
-		"resample",
-		"volume.resample",
-		"write-mesh",
-		"isovalue",
-		"technique",
+		"scene",         "size",        "gaze",        "frames",          "turn",
+		"display-px",    "display-mm",  "distance-mm", "write-volume",    "record",
+		"transfer.file", "volume.dims", "volume.type", "volume.endian",   "volume.spacing",
+		"volume.series", "time-point",  "play",        "volume.channels", "volume.opacity",
+		"list-objects",  "list-series", "resample",    "volume.resample", "write-mesh",
+		"isovalue",      "technique",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t k = 0; k < sizeof others / sizeof others[0] && !other; k++)
@@ -270,6 +254,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->write_volume[0]                  ? "--write-volume"
 			    : options->write_mesh[0]                    ? "--write-mesh"
 			    : gz_view_option_given(options, "isovalue") ? "--isovalue"
+			    : options->list_objects                     ? "--list-objects"
 			    : options->list_series                      ? "--list-series"
 			    : options->out[0]                           ? "--out"
 			    : options->video[0]                         ? "--video"
@@ -317,7 +302,7 @@ static enum gz_result check_options(const struct gz_view_options *options, const
 		return GZ_ERR_INVAL;
 	if (!options->scene[0] && !options->replay[0] &&
 	    (options->headless || options->write_volume[0] || options->write_mesh[0] ||
-	     options->list_series)) {
+	     options->list_objects || options->list_series)) {
 		gz_err(log, "no scene; name one, as in: gazeview --scene head.scene (see --help)");
 		return GZ_ERR_INVAL;
 	}

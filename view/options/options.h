@@ -73,6 +73,7 @@ struct gz_view_options {
 	char write_volume[GZ_PATH_SIZE]; /**< empty: none */
 	char write_mesh[GZ_PATH_SIZE];   /**< empty: none */
 	double isovalue;                 /**< of that mesh, or of the surface shown; see given */
+	bool list_objects;               /**< of the scene, and exit */
 	bool list_series;                /**< of the folder or file in scene, and exit */
 	int bricks;                      /**< enum gz_bricks_rule */
 	int time_point;                  /**< of a series, from 1; 0: the scene's */

@@ -132,6 +132,7 @@ struct gz_window_part {
 	ROW(mesh_export)   /* writes the surfaces shown as a mesh */ \
 	ROW(series)        /* asks which of several series is to be shown */ \
 	ROW(notices)       /* shows messages */ \
+	ROW(objects)       /* lists what is shown */ \
 	ROW(transfer)      /* edits the transfer function */ \
 	ROW(time)          /* shows the time points of a series */ \
 	ROW(replay)        /* shows a session again; behind all that change the gaze */ \

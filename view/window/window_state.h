@@ -60,6 +60,7 @@ struct gz_window {
 	struct gz_window_loading *loading;
 	struct gz_window_mesh_export *mesh_export;
 	struct gz_window_notices *notices_state;
+	struct gz_window_objects *objects;
 	struct gz_overlay *overlay;
 	struct gz_window_replay *replay;
 	struct gz_window_series *series;
