@@ -99,6 +99,11 @@ static struct gz_plane_band band_of_part(const struct gz_shading_frame *frame, s
 					first + (rest < ROWS_A_PART ? rest : ROWS_A_PART) };
 }
 
+static void copy_floats(const void *plane, size_t from, size_t count, float *out)
+{
+	memcpy(out, (const char *)plane + from * sizeof *out, count * sizeof *out);
+}
+
 /* Before the histogram is complete: depth from 0 to 1, tone that is counted, and both blurs along
  * rows. */
 static void begin_part(void *user, size_t part, int worker)
@@ -110,11 +115,14 @@ static void begin_part(void *user, size_t part, int worker)
 	const size_t from = (size_t)band.first * (size_t)band.width;
 	const size_t count = (size_t)(band.end - band.first) * (size_t)band.width;
 	float *map = planes[PLANE_MAP] + from, *nearness = planes[PLANE_NEARNESS] + from;
-	gz_shading_viewer_distance(frame->depth + from, count, frame->near, frame->far, nearness);
+	float *room = planes[PLANE_SCENE] + from;
+	copy_floats(frame->depth, from, count, room);
+	gz_shading_viewer_distance(room, count, frame->near, frame->far, nearness);
+	copy_floats(frame->tone, from, count, map);
 	for (size_t i = 0; i < count; i++) {
 		const bool empty = frame->ids[from + i] == 0;
 		nearness[i] = empty ? 1 : nearness[i];
-		map[i] = empty ? 1 : frame->tone[from + i];
+		map[i] = empty ? 1 : map[i];
 	}
 	gz_tone_count(map, frame->ids + from, count, &job->picture->histograms[worker]);
 	if (job->settings->edge_light > 0)
@@ -132,7 +140,8 @@ static void gather_information(const float *values, size_t count, double weight,
 		scene[i] = 1 - (1 - scene[i]) * (1 - (float)weight * values[i]);
 }
 
-/* The scene information of a part; uses the plane of edge light as room before that is blurred. */
+/* The scene information of a part; uses the planes of edge light and shadow as room before those
+ * are blurred. */
 static bool fill_scene(const struct picture_job *job, size_t from, size_t count)
 {
 	const struct gz_shading_frame *frame = job->frame;
@@ -152,8 +161,10 @@ static bool fill_scene(const struct picture_job *job, size_t from, size_t count)
 		gather_information(job->picture->planes[PLANE_NEARNESS] + from, count,
 				   settings->viewer_distance, scene);
 	if (by_object) {
-		gz_shading_object_distance(frame->object_distance_mm + from, count,
-					   (float)settings->object_distance_mm, room);
+		float *distances = job->picture->planes[PLANE_SHADOW] + from;
+		copy_floats(frame->object_distance_mm, from, count, distances);
+		gz_shading_object_distance(distances, count, (float)settings->object_distance_mm,
+					   room);
 		gather_information(room, count, settings->object_distance, scene);
 	}
 	return true;

@@ -14,17 +14,17 @@
 #include "base/workers.h"
 #include "render/illustration/shading_settings.h"
 
-/** What a frame found. All planes are width by height, row 0 on top; borrowed. */
+/** What a frame found. All planes are width by height, row 0 on top; borrowed. Those of `void` hold
+ *  floats, which may have been stored as words (struct gz_plane). */
 struct gz_shading_frame {
-	int width, height; /**< 1 or more */
-	const float
-		*tone; /**< weighted mean of surface parameters; where ids are 0 it is not read */
-	const float *depth;              /**< distance along the ray, in any unit; likewise */
-	const uint32_t *ids;             /**< of objects; 0 is the background */
-	const float *object_distance_mm; /**< distance to a chosen object; NULL: none is chosen, and
-					      its weight counts as 0 */
-	float near, far;                 /**< of the scene, in the unit of depth; near < far */
-	const float *importances;        /**< of object 1 to @p objects, [0, 1]; others have 0 */
+	int width, height;   /**< 1 or more */
+	const void *tone;    /**< weighted mean of surface parameters; not used where ids are 0 */
+	const void *depth;   /**< distance along the ray, in any unit; likewise */
+	const uint32_t *ids; /**< of objects; 0 is the background */
+	const void *object_distance_mm; /**< distance to a chosen object; NULL: none is chosen, and
+					     its weight counts as 0 */
+	float near, far;                /**< of the scene, in the unit of depth; near < far */
+	const float *importances;       /**< of object 1 to @p objects, [0, 1]; others have 0 */
 	size_t objects;
 };
 

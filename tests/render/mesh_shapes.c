@@ -56,6 +56,9 @@ static void join_places(struct gz_mesh *mesh)
 {
 	for (size_t i = 0; i < 3 * mesh->triangle_count; i++) {
 		uint32_t *corner = &mesh->triangles[i / 3][i % 3];
+		const float *place = mesh->positions[*corner];
+		if (place[0] * place[1] * place[2] != 0)
+			continue; /* within a face */
 		for (uint32_t v = 0; v < *corner; v++) {
 			double far = 0;
 			for (int axis = 0; axis < 3; axis++)

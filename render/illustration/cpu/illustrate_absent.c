@@ -1,0 +1,56 @@
+/* In place of the caster where Embree was not found when the project was built. */
+#include "render/illustration/cpu/illustrate_caster.h"
+
+#define GZ_LOG_MODULE "illustration"
+
+bool gz_illustrate_caster_present(void)
+{
+	return false;
+}
+
+enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *params,
+					   const struct gz_log *log,
+					   struct gz_illustrate_caster **out_caster)
+{
+	(void)params;
+	(void)out_caster;
+	gz_err(log, "illustrations are not in this build, because it was made without Embree; "
+		    "install it (libembree-dev) and build again");
+	return GZ_ERR_UNSUPPORTED;
+}
+
+enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,
+					 const struct gz_object *objects,
+					 const struct gz_illustrated *each, size_t count)
+{
+	(void)caster;
+	(void)objects;
+	(void)each;
+	(void)count;
+	return GZ_ERR_UNSUPPORTED;
+}
+
+enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
+					 const struct gz_illustrate_shot *shot,
+					 struct gz_image *image,
+					 const struct gz_illustrate_planes *planes,
+					 struct gz_frame_stats *out_stats)
+{
+	(void)caster;
+	(void)shot;
+	(void)image;
+	(void)planes;
+	(void)out_stats;
+	return GZ_ERR_UNSUPPORTED;
+}
+
+const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)
+{
+	(void)caster;
+	return "absent";
+}
+
+void gz_illustrate_caster_destroy(struct gz_illustrate_caster **caster)
+{
+	*caster = NULL;
+}

@@ -1,0 +1,205 @@
+#include "render/illustration/cpu/illustrate_cast.h"
+
+#include <math.h>
+#include <stdalign.h>
+#include <stdbool.h>
+
+enum { RAYS = GZ_ILLUSTRATE_RAYS, PARAMETERS_MAX = 5 };
+
+/* What shading reads of each ray's end. */
+struct shading_lanes {
+	float normals[GZ_SHADING_LEVELS][3][RAYS];
+	float viewer[3][RAYS];
+	float greatest[RAYS], least[RAYS]; /* curvatures, as shares of the mesh's scale */
+};
+
+/* A packet on its way. */
+struct illustrate_packet {
+	struct RTCRayHit16 hit;
+	alignas(64) int valid[RAYS]; /* -1: cast this ray */
+};
+
+static void aim_packet(const struct gz_illustrate_cast *cast, const struct gz_illustrate_tile *tile,
+		       struct illustrate_packet *packet)
+{
+	struct RTCRay16 *ray = &packet->hit.ray;
+	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	float *const directions[3] = { ray->dir_x, ray->dir_y, ray->dir_z };
+	for (int i = 0; i < RAYS; i++) {
+		float direction[3], length2 = 0;
+		for (int axis = 0; axis < 3; axis++) {
+			origins[axis][i] = cast->origin00[axis] +
+					   tile->x[i] * cast->origin_dx[axis] +
+					   tile->y[i] * cast->origin_dy[axis];
+			direction[axis] = cast->direction00[axis] +
+					  tile->x[i] * cast->direction_dx[axis] +
+					  tile->y[i] * cast->direction_dy[axis];
+			length2 += direction[axis] * direction[axis];
+		}
+		for (int axis = 0; axis < 3; axis++)
+			directions[axis][i] = direction[axis] / sqrtf(length2);
+		ray->tnear[i] = 0;
+		ray->tfar[i] = INFINITY;
+		ray->time[i] = 0;
+		ray->mask[i] = UINT32_MAX;
+		ray->flags[i] = 0;
+		packet->hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+		packet->hit.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+		packet->valid[i] = tile->active >> i & 1 ? -1 : 0;
+	}
+}
+
+/* Where a ray has met a triangle: its corners and their shares. */
+struct triangle_place {
+	const struct gz_shading_vertices *vertices;
+	const uint32_t *corners;
+	float shares[3];
+};
+
+static struct triangle_place place_of_hit(const struct gz_illustrate_mesh *mesh,
+					  const struct RTCHit16 *hit, int i)
+{
+	return (struct triangle_place) {
+		.vertices = mesh->vertices,
+		.corners = mesh->triangles[hit->primID[i]],
+		.shares = { 1 - hit->u[i] - hit->v[i], hit->u[i], hit->v[i] },
+	};
+}
+
+static float value_at(const struct triangle_place *place, const float *values)
+{
+	return place->shares[0] * values[place->corners[0]] +
+	       place->shares[1] * values[place->corners[1]] +
+	       place->shares[2] * values[place->corners[2]];
+}
+
+/* The normal of a level. Opposite normals of the corners can leave nothing: the first one's then.
+ */
+static void normal_at(const struct triangle_place *place, int level, float out_normal[3])
+{
+	const float(*normals)[3] = gz_shading_vertices_level(place->vertices, level);
+	float length2 = 0;
+	for (int axis = 0; axis < 3; axis++) {
+		out_normal[axis] = place->shares[0] * normals[place->corners[0]][axis] +
+				   place->shares[1] * normals[place->corners[1]][axis] +
+				   place->shares[2] * normals[place->corners[2]][axis];
+		length2 += out_normal[axis] * out_normal[axis];
+	}
+	const bool lost = !(length2 > 1e-12F);
+	for (int axis = 0; axis < 3; axis++)
+		out_normal[axis] =
+			lost ? normals[place->corners[0]][axis] : out_normal[axis] / sqrtf(length2);
+}
+
+/* -1 where the surface is seen from behind, otherwise 1. The triangle's plane decides, because
+ * interpolated normals turn away a little before the surface does. */
+static float side_of_hit(const struct RTCHit16 *hit, const struct RTCRay16 *ray, int i,
+			 const float normal[3])
+{
+	const float outwards =
+		hit->Ng_x[i] * normal[0] + hit->Ng_y[i] * normal[1] + hit->Ng_z[i] * normal[2];
+	const float away = hit->Ng_x[i] * ray->dir_x[i] + hit->Ng_y[i] * ray->dir_y[i] +
+			   hit->Ng_z[i] * ray->dir_z[i];
+	return outwards * away > 0 ? -1 : 1;
+}
+
+static void fill_empty_lane(int i, struct shading_lanes *lanes)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		for (int level = 0; level < GZ_SHADING_LEVELS; level++)
+			lanes->normals[level][axis][i] = axis == 2;
+		lanes->viewer[axis][i] = axis == 2;
+	}
+	lanes->greatest[i] = lanes->least[i] = 0;
+}
+
+static void fill_lane(const struct triangle_place *place, const struct RTCRayHit16 *hit, int i,
+		      struct shading_lanes *lanes)
+{
+	float side = 1;
+	for (int level = 0; level < GZ_SHADING_LEVELS; level++) {
+		float normal[3];
+		normal_at(place, level, normal);
+		if (level == 0)
+			side = side_of_hit(&hit->hit, &hit->ray, i, normal);
+		for (int axis = 0; axis < 3; axis++)
+			lanes->normals[level][axis][i] = side * normal[axis];
+	}
+	const float greatest = value_at(place, place->vertices->greatest);
+	const float least = value_at(place, place->vertices->least);
+	const float scale = side / place->vertices->curvature_scale;
+	lanes->greatest[i] = scale * (side > 0 ? greatest : least);
+	lanes->least[i] = scale * (side > 0 ? least : greatest);
+	lanes->viewer[0][i] = -hit->ray.dir_x[i];
+	lanes->viewer[1][i] = -hit->ray.dir_y[i];
+	lanes->viewer[2][i] = -hit->ray.dir_z[i];
+}
+
+static void read_hits(const struct gz_illustrate_cast *cast, const struct RTCRayHit16 *hit,
+		      struct shading_lanes *lanes, struct gz_illustrate_hits *hits)
+{
+	for (int i = 0; i < RAYS; i++) {
+		const unsigned number = hit->hit.geomID[i];
+		const bool met = number < cast->mesh_count;
+		hits->ids[i] = met ? cast->meshes[number].id : 0;
+		hits->depth_mm[i] = met ? hit->ray.tfar[i] : INFINITY;
+		hits->distance_mm[i] = INFINITY;
+		if (!met) {
+			fill_empty_lane(i, lanes);
+			continue;
+		}
+		const struct gz_illustrate_mesh *mesh = &cast->meshes[number];
+		const struct triangle_place place = place_of_hit(mesh, &hit->hit, i);
+		fill_lane(&place, hit, i, lanes);
+		if (mesh->distances_mm)
+			hits->distance_mm[i] = value_at(&place, mesh->distances_mm);
+	}
+}
+
+/* Mean of the parameters that have a weight. */
+static void shade_lanes(const struct gz_illustrate_cast *cast, const struct shading_lanes *lanes,
+			float *out_tone)
+{
+	const struct gz_illustrate_weights *weights = &cast->weights;
+	float values[PARAMETERS_MAX][RAYS] = { { 0 } };
+	struct gz_weighted_parameter parameters[PARAMETERS_MAX];
+	struct gz_shading_vectors normals[GZ_SHADING_LEVELS];
+	const struct gz_shading_vectors viewer = { lanes->viewer[0], lanes->viewer[1],
+						   lanes->viewer[2] };
+	const float all[PARAMETERS_MAX] = { weights->main_light, weights->plateau_light,
+					    weights->grazing_light, weights->surface_shape,
+					    weights->curvature };
+	for (int i = 0; i < PARAMETERS_MAX; i++)
+		parameters[i] = (struct gz_weighted_parameter) { values[i], all[i] };
+	for (int level = 0; level < GZ_SHADING_LEVELS; level++)
+		normals[level] = (struct gz_shading_vectors) { lanes->normals[level][0],
+							       lanes->normals[level][1],
+							       lanes->normals[level][2] };
+	if (weights->main_light > 0)
+		gz_shading_main_light(&normals[cast->main_level], RAYS, cast->grazing.light,
+				      values[0]);
+	if (weights->plateau_light > 0)
+		gz_shading_plateau_light(&normals[0], &viewer, RAYS, values[1]);
+	if (weights->grazing_light > 0)
+		gz_shading_grazing_light(normals, RAYS, &cast->grazing, values[2]);
+	if (weights->surface_shape > 0)
+		gz_shading_surface_shape(lanes->greatest, lanes->least, RAYS, 1, values[3]);
+	if (weights->curvature > 0)
+		gz_shading_curvature_magnitude(lanes->greatest, lanes->least, RAYS, 1, values[4]);
+	gz_shading_mean(parameters, PARAMETERS_MAX, RAYS, out_tone);
+}
+
+void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
+			     const struct gz_illustrate_tile *tile,
+			     struct gz_illustrate_hits *out_hits)
+{
+	struct illustrate_packet packet;
+	struct shading_lanes lanes;
+	aim_packet(cast, tile, &packet);
+	gz_embree_intersect(packet.valid, cast->tree, &packet.hit);
+	read_hits(cast, &packet.hit, &lanes, out_hits);
+	shade_lanes(cast, &lanes, out_hits->tone);
+	for (int i = 0; i < RAYS; i++)
+		if (out_hits->ids[i] == 0)
+			out_hits->tone[i] = INFINITY;
+}

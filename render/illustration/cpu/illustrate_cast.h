@@ -1,0 +1,64 @@
+/**
+ * @file
+ * One tile of rays at meshes: the weighted mean of the surface parameters where each ray ends.
+ * Within this room.
+ */
+#ifndef GZ_RENDER_ILLUSTRATION_CPU_ILLUSTRATE_CAST_H
+#define GZ_RENDER_ILLUSTRATION_CPU_ILLUSTRATE_CAST_H
+
+#include <stdint.h>
+
+#include "render/illustration/shading_parameters.h"
+#include "render/illustration/shading_vertices.h"
+#include "render/surface/cpu/embree.h"
+
+/** Rays of a tile, which are one packet of Embree. */
+#define GZ_ILLUSTRATE_RAYS 16
+
+/** One mesh. All pointers are borrowed. */
+struct gz_illustrate_mesh {
+	const uint32_t (*triangles)[3]; /**< in the order of the tree */
+	const struct gz_shading_vertices *vertices;
+	const float *distances_mm; /**< of vertices to the chosen object; NULL: none is chosen */
+	uint32_t id;               /**< of its object */
+};
+
+/** Weights of the surface parameters, 0 or more. */
+struct gz_illustrate_weights {
+	float main_light, plateau_light, grazing_light, surface_shape, curvature;
+};
+
+/** What all rays of a frame share. Lengths are in mm, in the frame of struct gz_mesh. */
+struct gz_illustrate_cast {
+	RTCScene tree;
+	const struct gz_illustrate_mesh *meshes; /**< by the tree's numbers of geometries */
+	unsigned mesh_count;
+	/** The ray of pixel (x, y), as in struct gz_ray_frame. */
+	float origin00[3], origin_dx[3], origin_dy[3];
+	float direction00[3], direction_dx[3], direction_dy[3];
+	struct gz_illustrate_weights weights;
+	int main_level; /**< of the normals under the main light */
+	struct gz_grazing_light grazing;
+};
+
+/** The rays of a tile. */
+struct gz_illustrate_tile {
+	float x[GZ_ILLUSTRATE_RAYS], y[GZ_ILLUSTRATE_RAYS]; /**< pixels of its rays */
+	uint32_t active;                                    /**< bit i: cast ray i */
+};
+
+/** What the rays found. Where there is nothing, ids are 0 and all else is INFINITY. */
+struct gz_illustrate_hits {
+	float tone[GZ_ILLUSTRATE_RAYS];        /**< weighted mean of the parameters, [0, 1] */
+	float depth_mm[GZ_ILLUSTRATE_RAYS];    /**< along the ray */
+	float distance_mm[GZ_ILLUSTRATE_RAYS]; /**< to the chosen object */
+	uint32_t ids[GZ_ILLUSTRATE_RAYS];
+};
+
+/** Cast a tile. What a ray finds depends on its pixel alone. A surface that is seen from behind is
+ *  shaded as if it faced the viewer. Threads: any number. Does not allocate. */
+void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
+			     const struct gz_illustrate_tile *tile,
+			     struct gz_illustrate_hits *out_hits);
+
+#endif

@@ -1,0 +1,110 @@
+/**
+ * @file
+ * Illustrations of surfaces by rays: the plan's rays find tone, depth and objects, those three
+ * planes are reconstructed, and the picture is composed of them at full resolution
+ * (render/illustration/shading_picture.h).
+ */
+#ifndef GZ_RENDER_ILLUSTRATION_CPU_ILLUSTRATE_CASTER_H
+#define GZ_RENDER_ILLUSTRATION_CPU_ILLUSTRATE_CASTER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "render/illustration/shading_settings.h"
+#include "render/picture/camera.h"
+#include "render/picture/image.h"
+#include "render/picture/plane.h"
+#include "render/plan/plan.h"
+#include "render/technique/technique.h"
+
+/** Most number of an object. Chosen: a scene has 32, an atlas some hundreds. */
+#define GZ_ILLUSTRATE_ID_MAX 65535
+
+/** Surfaces, what shading knows of them, and the threads that cast. One thread at a time may use
+ * it.
+ */
+struct gz_illustrate_caster;
+
+/** What an illustration knows of an object besides its data. */
+struct gz_illustrated {
+	double importance; /**< [0, 1] */
+	const char *input; /**< file that the mesh stems from, beside which what is computed of it
+			      is kept; NULL: it is not kept. Borrowed */
+};
+
+/** One picture to draw. All pointers are borrowed. */
+struct gz_illustrate_shot {
+	const struct gz_camera *camera;
+	const struct gz_plan *plan;
+	const struct gz_shading_settings *settings;
+	double isovalue;    /**< of objects that are volumes */
+	uint32_t chosen_id; /**< object from which distances count; 0: none. Used if
+				 settings->object_distance is above 0 */
+};
+
+/** Planes of a picture, for who draws on; each may be NULL. */
+struct gz_illustrate_planes {
+	struct gz_plane *depth; /**< GZ_PLANE_VALUE, along the ray, mm; INFINITY: nothing */
+	struct gz_plane *ids;   /**< GZ_PLANE_ID */
+};
+
+/** Whether there is one in this build: it needs Embree. If not, gz_illustrate_caster_create() says
+ *  so and fails with GZ_ERR_UNSUPPORTED. */
+bool gz_illustrate_caster_present(void);
+
+/**
+ * Make a caster that shows nothing.
+ *
+ * @param params  NULL: the defaults
+ * @param log     outlives the caster; may be NULL
+ * @param[out] out_caster  owned by the caller; gz_illustrate_caster_destroy()
+ * @retval GZ_ERR_UNSUPPORTED  no Embree, or this processor lacks the instruction set; logged
+ * @retval GZ_ERR_INVAL        the number of threads is out of range; logged
+ * @retval GZ_ERR_NO_MEM       out of memory
+ */
+enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *params,
+					   const struct gz_log *log,
+					   struct gz_illustrate_caster **out_caster);
+
+/**
+ * Show these objects from the next picture on. Surfaces and what shading knows of them are made
+ * when that picture is drawn.
+ *
+ * @param objects  as for gz_surface_caster_show(); ids are 1 to GZ_ILLUSTRATE_ID_MAX
+ * @param each     @p count of them, in the order of the objects; NULL: all are of importance 1/2
+ * and nothing is kept
+ * @retval GZ_ERR_INVAL        no objects, or an id or importance out of range
+ * @retval GZ_ERR_UNSUPPORTED  a volume of bricks, or an object without a volume; logged
+ * @retval GZ_ERR_NO_MEM       out of memory
+ */
+enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,
+					 const struct gz_object *objects,
+					 const struct gz_illustrated *each, size_t count);
+
+/**
+ * Draw a picture of the plan's size and write every pixel. The background is white. The same bits
+ * for any number of threads.
+ *
+ * @param planes     NULL: no planes are wanted
+ * @param out_stats  may be NULL
+ * @retval GZ_ERR_INVAL   nothing is shown, the camera or the settings are not valid, or the plan is
+ *                        empty
+ * @retval GZ_ERR_FULL    a surface has too many triangles; logged
+ * @retval GZ_ERR_NO_MEM  out of memory
+ * @return otherwise what making surfaces returns; logged
+ */
+enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
+					 const struct gz_illustrate_shot *shot,
+					 struct gz_image *image,
+					 const struct gz_illustrate_planes *planes,
+					 struct gz_frame_stats *out_stats);
+
+/** One line for reports, such as "avx2, 2 threads"; owned by the caster. */
+const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster);
+
+/** Destroy the caster and set the pointer to NULL. Accepts a pointer to NULL. */
+void gz_illustrate_caster_destroy(struct gz_illustrate_caster **caster);
+
+#endif

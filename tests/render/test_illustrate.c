@@ -1,0 +1,364 @@
+/* Illustrations by rays: tone by the formulas of lights, lines around objects, scene information,
+ * by any plan and number of threads. */
+#include "suite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh_fields.h"
+#include "mesh_shapes.h"
+#include "render/illustration/cpu/illustrate_caster.h"
+#include "render/plan/method.h"
+
+enum { WIDTH = 160, HEIGHT = 120, PIXELS = WIDTH * HEIGHT };
+
+#define RADIUS_MM 12.0
+
+/* What a test draws, and what it gets. */
+struct easel {
+	struct gz_volume volume; /* its box, 40 mm wide, is the world */
+	struct gz_mesh meshes[2];
+	struct gz_object objects[2];
+	struct gz_illustrated each[2];
+	size_t count;
+	struct gz_camera camera;
+	struct gz_shading_settings settings;
+	struct gz_foveation foveation;
+	uint32_t chosen_id;
+	struct gz_plan plan;
+	struct gz_image image;
+	struct gz_plane depth, ids;
+};
+
+/* A ball in the middle, seen from the front. */
+static void set_up_easel(struct easel *easel)
+{
+	static const int dims[3] = { 4, 4, 4 };
+	static const double spacing[3] = { 10, 10, 10 };
+	const struct gz_option_binding binding = { gz_shading_options, gz_shading_option_count,
+						   &easel->settings, NULL };
+	memset(easel, 0, sizeof *easel);
+	easel->volume = field_volume(field_ball, dims, spacing, GZ_VOXEL_F32);
+	easel->meshes[0] = mesh_ball(RADIUS_MM, 5);
+	easel->count = 1;
+	for (int i = 0; i < 2; i++) {
+		easel->objects[i] = (struct gz_object) { .id = 3 + (uint32_t)i,
+							 .volume = &easel->volume,
+							 .mesh = &easel->meshes[i] };
+		easel->each[i].importance = 1;
+	}
+	easel->camera = (struct gz_camera) {
+		.eye = { 0, -2, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30, .height = 1
+	};
+	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	easel->foveation = gz_foveation_full();
+}
+
+static void take_down_easel(struct easel *easel)
+{
+	gz_volume_free(&easel->volume);
+	gz_mesh_free(&easel->meshes[0]);
+	gz_mesh_free(&easel->meshes[1]);
+	gz_plan_free(&easel->plan);
+	gz_image_free(&easel->image);
+	gz_plane_free(&easel->depth);
+	gz_plane_free(&easel->ids);
+}
+
+/* A second, smaller ball at some place. */
+static void add_ball(struct easel *easel, double x, double y, double z)
+{
+	const double place[3] = { x, y, z };
+	easel->meshes[1] = mesh_ball(4, 4);
+	for (size_t v = 0; v < easel->meshes[1].vertex_count; v++)
+		for (int axis = 0; axis < 3; axis++)
+			easel->meshes[1].positions[v][axis] += (float)place[axis];
+	easel->count = 2;
+}
+
+/* No steps over the picture but equalisation, and one light. */
+static void plain_look(struct easel *easel)
+{
+	struct gz_shading_settings *settings = &easel->settings;
+	settings->main_light = 1;
+	settings->plateau_light = settings->grazing_light = 0;
+	settings->edge_light = settings->overlap_shadow = settings->haze = settings->lines = 0;
+}
+
+static enum gz_result draw_shot(struct gz_illustrate_caster *caster, struct easel *easel)
+{
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	const struct gz_point gaze = { 0.4F, 0.45F };
+	const struct gz_illustrate_planes planes = { &easel->depth, &easel->ids };
+	const struct gz_illustrate_shot shot = {
+		.camera = &easel->camera,
+		.plan = &easel->plan,
+		.settings = &easel->settings,
+		.chosen_id = easel->chosen_id,
+	};
+	assert_int_equal(
+		gz_plan_make(&easel->foveation, &display, gaze, WIDTH, HEIGHT, &easel->plan),
+		GZ_OK);
+	return gz_illustrate_caster_draw(caster, &shot, &easel->image, &planes, NULL);
+}
+
+static struct gz_illustrate_caster *new_caster(int threads, const char *simd)
+{
+	const struct gz_backend_params params = { .threads = threads, .simd = simd };
+	struct gz_illustrate_caster *caster = NULL;
+	assert_int_equal(gz_illustrate_caster_create(&params, NULL, &caster), GZ_OK);
+	return caster;
+}
+
+static void draw_easel(struct easel *easel, int threads)
+{
+	struct gz_illustrate_caster *caster = new_caster(threads, NULL);
+	assert_int_equal(
+		gz_illustrate_caster_show(caster, easel->objects, easel->each, easel->count),
+		GZ_OK);
+	assert_int_equal(draw_shot(caster, easel), GZ_OK);
+	gz_illustrate_caster_destroy(&caster);
+}
+
+static int grey_at(const struct easel *easel, int x, int y)
+{
+	return (int)(gz_image_words(&((struct easel *)easel)->image)[y * WIDTH + x] & 255);
+}
+
+static uint32_t id_at(const struct easel *easel, int x, int y)
+{
+	return easel->ids.words[y * WIDTH + x];
+}
+
+/* The main light on the ball, by its formula; false where the ray passes. */
+static bool tone_of_ball(const struct easel *easel, int x, int y, double *out_tone)
+{
+	struct gz_ray_frame frame;
+	double origin[3], direction[3], b = 0, c = -RADIUS_MM * RADIUS_MM, length2 = 0;
+	assert_int_equal(gz_camera_rays(&easel->camera, WIDTH, HEIGHT, &frame), GZ_OK);
+	for (int axis = 0; axis < 3; axis++) {
+		origin[axis] = 40 * frame.origin00[axis];
+		direction[axis] = frame.direction00[axis] + x * frame.direction_dx[axis] +
+				  y * frame.direction_dy[axis];
+		length2 += direction[axis] * direction[axis];
+		b += origin[axis] * direction[axis];
+		c += origin[axis] * origin[axis];
+	}
+	const double root = b * b - length2 * c;
+	if (root < 0)
+		return false;
+	const double at = (-b - sqrt(root)) / length2;
+	/* From upper left: -x and +z of the world. */
+	const double normal_x = (origin[0] + at * direction[0]) / RADIUS_MM;
+	const double normal_z = (origin[2] + at * direction[2]) / RADIUS_MM;
+	*out_tone = 0.5 + 0.5 * (normal_z - normal_x) / sqrt(2);
+	return true;
+}
+
+/* Equalisation keeps the order of tones: of two pixels of the ball, the one that the light meets
+ * more squarely is brighter. */
+static void main_light_falls_from_upper_left(void **state)
+{
+	(void)state;
+	struct easel easel;
+	uint32_t seed = 8;
+	int compared = 0;
+	set_up_easel(&easel);
+	plain_look(&easel);
+	draw_easel(&easel, 2);
+	for (int i = 0; i < 80000; i++) {
+		int x[2], y[2];
+		double tones[2];
+		bool met = true;
+		for (int k = 0; k < 2; k++) {
+			x[k] = (int)(WIDTH * 0.9999 * field_random(&seed));
+			y[k] = (int)(HEIGHT * 0.9999 * field_random(&seed));
+			met = met && id_at(&easel, x[k], y[k]) == 3 &&
+			      tone_of_ball(&easel, x[k], y[k], &tones[k]);
+		}
+		if (!met || tones[0] < tones[1] + 0.02)
+			continue;
+		compared++;
+		assert_true(grey_at(&easel, x[0], y[0]) >= grey_at(&easel, x[1], y[1]));
+	}
+	assert_true(compared > 1000);
+	assert_int_equal(grey_at(&easel, 2, 2), 255);
+	assert_int_equal(id_at(&easel, 2, 2), 0);
+	take_down_easel(&easel);
+}
+
+static void dark_line_runs_around_the_ball(void **state)
+{
+	(void)state;
+	struct easel easel;
+	int border = 0;
+	set_up_easel(&easel);
+	draw_easel(&easel, 2);
+	for (int y = 1; y < HEIGHT - 1; y++)
+		for (int x = 1; x < WIDTH - 1; x++) {
+			if (id_at(&easel, x, y) == 0)
+				continue;
+			const bool edge =
+				id_at(&easel, x - 1, y) == 0 || id_at(&easel, x + 1, y) == 0 ||
+				id_at(&easel, x, y - 1) == 0 || id_at(&easel, x, y + 1) == 0;
+			border += edge;
+			assert_true(!edge || grey_at(&easel, x, y) <= 52);
+		}
+	assert_true(border > 150);
+	take_down_easel(&easel);
+}
+
+/* A ball that is turned inside out is seen from behind, and drawn as if it were not. */
+static void inside_out_looks_the_same(void **state)
+{
+	(void)state;
+	static uint32_t right[PIXELS];
+	struct easel easel;
+	int apart = 0;
+	set_up_easel(&easel);
+	easel.settings.surface_shape = easel.settings.curvature = 0.5;
+	draw_easel(&easel, 1);
+	memcpy(right, gz_image_words(&easel.image), sizeof right);
+	struct gz_mesh *mesh = &easel.meshes[0];
+	for (size_t t = 0; t < mesh->triangle_count; t++)
+		mesh_turn(mesh, t);
+	for (size_t v = 0; v < mesh->vertex_count; v++)
+		for (int axis = 0; axis < 3; axis++)
+			mesh->normals[v][axis] = -mesh->normals[v][axis];
+	draw_easel(&easel, 1);
+	for (int i = 0; i < PIXELS; i++) {
+		const int a = (int)(right[i] & 255);
+		const int b = (int)(gz_image_words(&easel.image)[i] & 255);
+		apart = abs(a - b) > apart ? abs(a - b) : apart;
+	}
+	print_message("most %d levels apart\n", apart);
+	assert_true(apart <= 3);
+	take_down_easel(&easel);
+}
+
+static void threads_give_the_same_bits(void **state)
+{
+	(void)state;
+	static uint32_t alone[PIXELS];
+	struct easel easel;
+	set_up_easel(&easel);
+	add_ball(&easel, -9, -15, 3);
+	easel.settings.object_distance = 0.5;
+	easel.chosen_id = 4;
+	draw_easel(&easel, 1);
+	memcpy(alone, gz_image_words(&easel.image), sizeof alone);
+	draw_easel(&easel, 3);
+	assert_memory_equal(alone, gz_image_words(&easel.image), sizeof alone);
+	take_down_easel(&easel);
+}
+
+/* Where the eye looks, a foveated plan gives what all rays give, but for the histogram, which has
+ * fewer points in the periphery. */
+static void foveated_picture_is_sharp_at_the_gaze(void **state)
+{
+	(void)state;
+	static uint32_t full[PIXELS];
+	struct easel easel;
+	int apart = 0;
+	set_up_easel(&easel);
+	draw_easel(&easel, 2);
+	memcpy(full, gz_image_words(&easel.image), sizeof full);
+	const uint64_t all = easel.plan.ray_count;
+	easel.foveation = gz_foveation_full();
+	easel.foveation.method = gz_method_find("acuity");
+	easel.foveation.acuity_slope = 0.15; /* the small picture is coarse already */
+	draw_easel(&easel, 2);
+	assert_true(easel.plan.ray_count < all);
+	for (int y = 50; y < 58; y++)
+		for (int x = 60; x < 68; x++) {
+			const int a = (int)(full[y * WIDTH + x] & 255);
+			const int b = grey_at(&easel, x, y);
+			apart = abs(a - b) > apart ? abs(a - b) : apart;
+		}
+	print_message("%llu of %llu rays, most %d levels apart\n",
+		      (unsigned long long)easel.plan.ray_count, (unsigned long long)all, apart);
+	assert_true(apart <= 6);
+	take_down_easel(&easel);
+}
+
+static double mean_of_object(const struct easel *easel, uint32_t id)
+{
+	double sum = 0;
+	int count = 0;
+	for (int i = 0; i < PIXELS; i++)
+		if (easel->ids.words[i] == id) {
+			sum += grey_at(easel, i % WIDTH, i / WIDTH);
+			count++;
+		}
+	assert_true(count > 50);
+	return sum / count;
+}
+
+static void what_does_not_matter_fades(void **state)
+{
+	(void)state;
+	struct easel easel;
+	set_up_easel(&easel);
+	add_ball(&easel, -9, -15, 3);
+	plain_look(&easel);
+	draw_easel(&easel, 2);
+	const double plain[2] = { mean_of_object(&easel, 3), mean_of_object(&easel, 4) };
+	easel.settings.importance = 1;
+	easel.each[0].importance = 0.25;
+	draw_easel(&easel, 2);
+	assert_float_equal(mean_of_object(&easel, 3), 0.25 * plain[0] + 0.75 * 255, 0.6);
+	assert_float_equal(mean_of_object(&easel, 4), plain[1], 0.6);
+	/* Of an object as far as the other, nothing is left; the chosen one stays. */
+	easel.settings.importance = 0;
+	easel.settings.object_distance = 1;
+	easel.settings.object_distance_mm = 0.5;
+	easel.chosen_id = 4;
+	draw_easel(&easel, 2);
+	assert_float_equal(mean_of_object(&easel, 4), plain[1], 0.6);
+	assert_true(mean_of_object(&easel, 3) > 250);
+	take_down_easel(&easel);
+}
+
+static void what_cannot_be_drawn_is_refused(void **state)
+{
+	(void)state;
+	struct easel easel;
+	struct gz_illustrate_caster *caster = new_caster(1, "portable");
+	set_up_easel(&easel);
+	assert_string_equal(gz_illustrate_caster_describe(caster), "portable, 1 threads");
+	assert_int_equal(draw_shot(caster, &easel), GZ_ERR_INVAL); /* nothing is shown */
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 0), GZ_ERR_INVAL);
+	easel.each[0].importance = 2;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, easel.each, 1),
+			 GZ_ERR_INVAL);
+	easel.objects[0].id = 0;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 1), GZ_ERR_INVAL);
+	easel.objects[0].id = 3;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 1), GZ_OK);
+	assert_int_equal(draw_shot(caster, &easel), GZ_OK);
+	easel.objects[0].volume = NULL;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 1),
+			 GZ_ERR_UNSUPPORTED);
+	assert_int_equal(draw_shot(caster, &easel), GZ_OK); /* what was there */
+	easel.settings.line_width = 9;
+	assert_int_equal(draw_shot(caster, &easel), GZ_ERR_INVAL);
+	gz_illustrate_caster_destroy(&caster);
+	assert_null(caster);
+	gz_illustrate_caster_destroy(&caster);
+	take_down_easel(&easel);
+}
+
+TEST_SUITE(illustrate)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(main_light_falls_from_upper_left),
+		cmocka_unit_test(dark_line_runs_around_the_ball),
+		cmocka_unit_test(inside_out_looks_the_same),
+		cmocka_unit_test(threads_give_the_same_bits),
+		cmocka_unit_test(foveated_picture_is_sharp_at_the_gaze),
+		cmocka_unit_test(what_does_not_matter_fades),
+		cmocka_unit_test(what_cannot_be_drawn_is_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
