@@ -193,6 +193,44 @@ static void pre_integrated_pictures_and_levels_of_detail_equal_the_cpus(void **s
 	}
 }
 
+static void soft_shadows_equal_the_cpus(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(70, 51, 64, GZ_VOXEL_U8);
+	struct pair pair = pair_of(&scene);
+	scene.foveation.method = GZ_METHOD_ACUITY;
+	scene.rays.light.ambient = 0.1;
+	scene.rays.light.shadow_steps = 6;
+	check_pair(&pair, &scene, 200, 150, "shadows in smoke");
+	scene.rays.shading = GZ_SHADING_GRADIENT;
+	for (int variant = 0; variant < 4; variant++) {
+		scene.rays.light.direction[0] = variant & 1 ? 0.8 : -0.6;
+		scene.rays.light.occlusion = variant & 1 ? 0.5 : 0;
+		scene.rays.clip.greatest[2] = variant & 2 ? 0.7 : 1;
+		scene.rays.levels = variant == 3;
+		check_pair(&pair, &scene, 200, 150, "shadows on surfaces");
+	}
+	scene.rays.light.shadow_steps = 0;
+	check_pair(&pair, &scene, 200, 150, "no shadows after some");
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
+static void soft_shadows_as_a_graphics_device_makes_them_equal_the_cpus(void **state)
+{
+	(void)state;
+	const struct raycaster_params params = { .hooks.as_hardware = true };
+	struct small_scene scene = small_scene_waves(70, 51, 64, GZ_VOXEL_F32);
+	struct pair pair = { .cpu = renderer_of("cpu", &scene),
+			     .gl = renderer_with("gl", &params, &scene) };
+	scene.rays.shading = GZ_SHADING_GRADIENT;
+	scene.rays.light.shadow_steps = 6;
+	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+	check_pair(&pair, &scene, 200, 150, "shadows as on a device");
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
 static void pictures_from_inside_and_orthographic_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -517,6 +555,9 @@ static void cast_shaders_are_valid_for_the_reference_compiler(void **state)
 					.nearest = variant & 1,
 					.segments = variant & 2,
 					.shaded = variant & 4,
+					/* half of them, others for each type */
+					.shadowed =
+						(__builtin_popcount((unsigned)variant) + type) & 1,
 					.fine = variant & 16,
 					.coloured = variant & 32,
 					.hits = variant & 64,
@@ -567,6 +608,8 @@ TEST_SUITE(gl)
 		cmocka_unit_test(
 			pictures_of_colours_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pre_integrated_pictures_and_levels_of_detail_equal_the_cpus),
+		cmocka_unit_test(soft_shadows_equal_the_cpus),
+		cmocka_unit_test(soft_shadows_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),
 		cmocka_unit_test(pictures_of_any_size_equal_the_cpus),
 		cmocka_unit_test(jittered_pictures_of_a_shifted_plan_equal_the_cpus),

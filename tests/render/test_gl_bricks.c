@@ -206,17 +206,22 @@ static void occlusion_and_shadows_of_a_file_of_bricks_are_refused(void **state)
 	check_refused("cpu", &bricks, "light.occlusion");
 	bricks.rays.light.occlusion = 0;
 	bricks.rays.light.shadow_steps = 8;
+	check_refused("gl", &bricks, "light.shadow_steps");
 	check_refused("cpu", &bricks, "light.shadow_steps");
 	small_scene_free(&bricks);
 	small_scene_free(&scene);
 }
 
-static void shadows_are_refused(void **state)
+/* The volume is in memory, where the processor makes the grid of shadows. */
+static void shadows_of_volumes_beyond_the_textures_look_the_same(void **state)
 {
 	(void)state;
-	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U8);
+	const struct raycaster_params beyond = { .hooks.volume_edge_max = 139 };
+	struct small_scene scene = small_scene_waves(140, 40, 35, GZ_VOXEL_U8);
 	scene.rays.light.shadow_steps = 8;
-	check_refused("gl", &scene, "light.shadow_steps");
+	scene.rays.levels = true;
+	scene.foveation.method = GZ_METHOD_ACUITY;
+	check_same(&scene, &scene.volume, beyond, "shadows by levels");
 	small_scene_free(&scene);
 }
 
@@ -464,7 +469,7 @@ TEST_SUITE(gl_bricks)
 		cmocka_unit_test(anisotropic_volumes_beyond_the_textures_look_the_same),
 		cmocka_unit_test(every_way_of_casting_works_by_bricks),
 		cmocka_unit_test(occlusion_and_shadows_of_a_file_of_bricks_are_refused),
-		cmocka_unit_test(shadows_are_refused),
+		cmocka_unit_test(shadows_of_volumes_beyond_the_textures_look_the_same),
 		cmocka_unit_test(levels_of_detail_are_those_of_the_cpu),
 		cmocka_unit_test(eye_inside_sees_the_same),
 		cmocka_unit_test(streamed_picture_is_whole_at_once_and_ends_as_the_one_waited_for),

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/captured_log.h"
 #include "oracle.h"
 #include "oracle_check.h"
 #include "oracle_light.h"
@@ -141,6 +142,23 @@ static void grid_of_a_large_volume_has_longer_cells(void **state)
 	assert_int_equal(grid.dims[2], 100);
 	assert_int_equal(grid.edge[0], 4);
 	assert_int_equal(grid.edge[2], 1);
+}
+
+static void walk_through_more_voxels_than_kernels_count_is_refused(void **state)
+{
+	(void)state;
+	const struct gz_volume volume = { .dims = { 2048, 2048, 513 }, .type = GZ_VOXEL_U8 };
+	const struct gz_lighting lighting = { .volume = &volume };
+	const struct gz_ray_params rays = gz_ray_params_default();
+	const struct gz_ray_frame frame = { 0 };
+	struct gz_light_walk walk;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_light_walk_make(&lighting, gz_cast_portable.arriving, &rays, &frame,
+					    &log.log, &walk),
+			 GZ_ERR_UNSUPPORTED);
+	assert_non_null(strstr(log.last, "2048 x 2048 x 513"));
+	assert_non_null(strstr(log.last, "light.shadow_steps"));
 }
 
 static void render_shadows(const struct small_scene *scene, int side, struct gz_image *image)
@@ -350,6 +368,7 @@ TEST_SUITE(shadows)
 		cmocka_unit_test(shadows_follow_a_new_transfer_function_and_clip_box),
 		cmocka_unit_test(shadows_of_bodies_far_apart_equal_the_oracle),
 		cmocka_unit_test(grid_of_a_large_volume_has_longer_cells),
+		cmocka_unit_test(walk_through_more_voxels_than_kernels_count_is_refused),
 		cmocka_unit_test(shadows_follow_the_light_its_steps_and_their_reach),
 		cmocka_unit_test(shadows_beyond_their_range_are_refused),
 	};

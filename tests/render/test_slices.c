@@ -131,6 +131,18 @@ static void slices_of_lit_float_data_converge_to_rays_in_parallel(void **state)
 	check_convergence(&scene, "lit floats");
 }
 
+static void slices_with_shadows_converge_to_rays(void **state)
+{
+	(void)state;
+	for (int lit = 0; lit < 2; lit++) {
+		struct small_scene scene = small_scene_waves(30, 21, 40, GZ_VOXEL_U8);
+		scene.rays.shading = lit ? GZ_SHADING_GRADIENT : GZ_SHADING_NONE;
+		scene.rays.light.shadow_steps = 6;
+		scene.rays.light.ambient = 0.1;
+		check_convergence(&scene, lit ? "shadows on surfaces" : "shadows in smoke");
+	}
+}
+
 static void pre_integrated_slices_converge_to_rays_from_within(void **state)
 {
 	(void)state;
@@ -347,12 +359,14 @@ static void shaders_of_slices_are_valid_for_the_reference_compiler(void **state)
 	struct gz_gl_shader shaders[2];
 	shader_check_needs_validator();
 	for (int variant = 0; variant < 16; variant++) {
+		const int bits = __builtin_popcount((unsigned)variant);
 		const struct gz_gl_cast_kind kind = {
 			.texels = variant & 1 ? GZ_GL_TEXELS_BRICKS : GZ_GL_TEXELS_PACKED,
 			.type = GZ_VOXEL_U16,
 			.nearest = variant & 1,
 			.segments = variant & 2,
 			.shaded = variant & 4,
+			.shadowed = bits & 1,
 			.fine = variant & 8,
 		};
 		const struct gz_gl_device device = { .software = variant & 8 };
@@ -375,6 +389,7 @@ TEST_SUITE(slices)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(slices_of_8_bit_data_converge_to_rays),
 		cmocka_unit_test(slices_of_lit_float_data_converge_to_rays_in_parallel),
+		cmocka_unit_test(slices_with_shadows_converge_to_rays),
 		cmocka_unit_test(pre_integrated_slices_converge_to_rays_from_within),
 		cmocka_unit_test(slices_of_labels_and_of_colours_converge_to_rays),
 		cmocka_unit_test(slices_of_a_clipped_volume_of_one_layer_converge_to_rays),

@@ -126,9 +126,10 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	assert_true(gz_setting_applies(&settings, "render.integration"));
 	assert_false(gz_setting_applies(&settings, "render.ray_sampling_rate"));
 	assert_false(gz_setting_applies(&settings, "isosurface.isovalue"));
-	settings.rays.light.shadow_steps = 4; /* slices cast none */
-	assert_false(gz_setting_applies(&settings, "light.shadow_steps"));
 	assert_false(gz_setting_applies(&settings, "light.ambient")); /* without shading */
+	settings.rays.light.shadow_steps = 4;
+	assert_true(gz_setting_applies(&settings, "light.shadow_steps"));
+	assert_true(gz_setting_applies(&settings, "light.ambient"));
 	settings.rays.light.shadow_steps = 0;
 	/* two objects of two techniques */
 	settings.technique = 0;

@@ -112,7 +112,7 @@ static bool with_occlusion(const struct gz_scene_settings *settings)
 
 static bool with_shadows(const struct gz_scene_settings *settings)
 {
-	return by_raycast(settings) && settings->rays.light.shadow_steps > 0;
+	return by_samples(settings) && settings->rays.light.shadow_steps > 0;
 }
 
 /* Shadows alone know how much light is ambient and where the rest comes from. */
@@ -178,7 +178,7 @@ static const struct {
 	{ "light.occlusion_radius", with_occlusion },
 	{ "light.occlusion", with_lit_samples },
 	{ "light.shadow_reach", with_shadows },
-	{ "light.shadow_steps", by_raycast },
+	{ "light.shadow_steps", by_samples },
 	{ "light.direction", with_a_lamp },
 	{ "light.frame", with_a_lamp },
 	{ "light.ambient", with_a_lamp },

@@ -138,6 +138,12 @@ extern const struct gz_cast_kernels gz_cast_avx2;
 extern const struct gz_cast_kernels gz_cast_avx512;
 #endif
 
+/** Fill in the voxels of a volume or level, in memory, and how they are counted. */
+void gz_cast_fill_voxels(const struct gz_volume *volume, struct gz_cast *cast);
+
+/** Fill in how values become entries of a table, which is borrowed, and its extinction. */
+void gz_cast_fill_table(const struct gz_transfer_table *table, struct gz_cast *cast);
+
 /** The kernels of an instruction set by name; for NULL or "auto" the best that this processor runs.
  *  NULL if it runs none of that name. */
 const struct gz_cast_kernels *gz_cast_kernels_find(const char *name);

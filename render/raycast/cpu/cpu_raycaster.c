@@ -52,6 +52,30 @@ const struct gz_cast_kernels *gz_cast_kernels_find(const char *name)
 	return NULL;
 }
 
+void gz_cast_fill_voxels(const struct gz_volume *volume, struct gz_cast *cast)
+{
+	const int *dims = volume->dims;
+	const int32_t strides[3] = { 1, dims[0], dims[0] * dims[1] };
+	cast->voxels = volume->voxels;
+	cast->colours = volume->colours;
+	for (int axis = 0; axis < 3; axis++) {
+		cast->dims[axis] = (float)dims[axis];
+		cast->last[axis] = dims[axis] > 1 ? dims[axis] - 2 : 0;
+		/* One voxel along an axis has no neighbour. */
+		cast->stride[axis] = axis == 0 || dims[axis] > 1 ? strides[axis] : 0;
+	}
+}
+
+void gz_cast_fill_table(const struct gz_transfer_table *table, struct gz_cast *cast)
+{
+	cast->entry_scale = (float)table->scale;
+	cast->entry_bias = (float)table->bias;
+	cast->entry_last = (float)(table->count - 1);
+	cast->preintegrated_shift = __builtin_ctz(GZ_PREINTEGRATED_STRIDE((unsigned)table->count));
+	cast->fine_entries = table->count > GZ_TRANSFER_TABLE_SIZE;
+	cast->extinction = table->entries;
+}
+
 /* A worker's own count, in a cache line of its own. */
 struct sample_count {
 	alignas(64) uint64_t samples;
@@ -253,28 +277,17 @@ static void fill_cast_volume(const struct cpu_raycaster *cpu, int index,
 			     const struct gz_clip_box *clip, struct gz_cast *cast)
 {
 	const struct gz_level *level = &cpu->detail.levels.level[index];
-	const struct gz_volume *volume = &level->volume;
 	const struct gz_macrocells *cells = &cpu->detail.cells[index];
-	const int32_t strides[3] = {
-		1,
-		volume->dims[0],
-		volume->dims[0] * volume->dims[1],
-	};
 	const int32_t cell_strides[3] = { 1, cells->dims[0], cells->dims[0] * cells->dims[1] };
 	double half[3];
 	gz_volume_half_extent(cpu->volume, half);
-	cast->voxels = volume->voxels;
-	cast->colours = volume->colours;
+	gz_cast_fill_voxels(&level->volume, cast);
 	cast->reach = cells->reach;
 	for (int axis = 0; axis < 3; axis++) {
 		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
 		cast->box[axis] = (float)box;
 		cast->clip_least[axis] = (float)(clip->least[axis] * box);
 		cast->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
-		cast->dims[axis] = (float)volume->dims[axis];
-		cast->last[axis] = volume->dims[axis] > 1 ? volume->dims[axis] - 2 : 0;
-		/* One voxel along an axis has no neighbour. */
-		cast->stride[axis] = axis == 0 || volume->dims[axis] > 1 ? strides[axis] : 0;
 		cast->cell_last[axis] = (float)(cells->dims[axis] - 1);
 		cast->cell_stride[axis] = cell_strides[axis];
 		cast->world_per_voxel[axis] = (float)(2 * half[axis] / box);
@@ -317,12 +330,7 @@ static void fill_cast_transfer(struct cpu_raycaster *cpu, const struct gz_plan *
 			       const struct gz_ray_params *rays, struct gz_cast *cast)
 {
 	const struct gz_transfer_table *table = cpu->table;
-	cast->entry_scale = (float)table->scale;
-	cast->entry_bias = (float)table->bias;
-	cast->entry_last = (float)(table->count - 1);
-	cast->preintegrated_shift = __builtin_ctz(GZ_PREINTEGRATED_STRIDE((unsigned)table->count));
-	cast->fine_entries = table->count > GZ_TRANSFER_TABLE_SIZE;
-	cast->extinction = table->entries;
+	gz_cast_fill_table(table, cast);
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
 		struct gz_transfer_entry *entries =
@@ -528,29 +536,26 @@ static void surround_casts(const struct cpu_raycaster *cpu, const struct gz_ray_
 
 /* Make the grid of shadows, if the frame has them. */
 static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_ray_params *rays,
-				  struct cast_job *job)
+				  const struct gz_ray_frame *ray_frame, struct cast_job *job)
 {
 	if (rays->light.shadow_steps == 0)
 		return GZ_OK;
 	/* What coarser levels show, and segments from end to end, may lie where no voxel does. */
 	const struct gz_light_grid_request request = {
-		.cast = &job->casts[0],
+		.lighting = &cpu->lighting,
 		.arriving = cpu->kernels->arriving,
-		.type = cpu->volume->type,
-		.nearest = gz_ray_samples_nearest(rays, cpu->volume),
-		.shadows = &cpu->lighting.shadows,
+		.rays = rays,
+		.ray_frame = ray_frame,
 		.cells = &cpu->detail.cells[0],
 		.everywhere =
 			job->cast_count > 1 || rays->integration == GZ_INTEGRATION_PREINTEGRATED,
-		.clip = &rays->clip,
 		.workers = cpu->workers,
+		.log = cpu->base.log,
 	};
 	struct gz_light_grid *grid = &cpu->light_grid;
 	const enum gz_result result = gz_light_grid_make(&request, grid);
-	if (result != GZ_OK) {
-		gz_err(cpu->base.log, "no memory for shadows: set light.shadow_steps to 0");
+	if (result != GZ_OK)
 		return result;
-	}
 	for (int i = 0; i < job->cast_count; i++)
 		gz_cast_cells_fill(grid->cells, grid->dims, grid->edge,
 				   cpu->detail.levels.level[i].factor,
@@ -604,7 +609,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	if (result == GZ_OK && cpu->volume->bricks)
 		result = take_bricks(cpu, camera, rays, &job);
 	if (result == GZ_OK)
-		result = light_casts(cpu, rays, &job);
+		result = light_casts(cpu, rays, &ray_frame, &job);
 	if (result != GZ_OK)
 		return result;
 	surround_casts(cpu, rays, &job);

@@ -5,12 +5,15 @@
 
 #include "render/light/light_cells.h"
 
+#define GZ_LOG_MODULE "render"
+
 /* Voxels along the edge of a macrocell. */
 enum { MACROCELL = GZ_MACROCELL_EDGE };
 
 /* The job that the workers share. */
 struct light_grid_job {
 	const struct gz_light_grid_request *request;
+	struct gz_light_walk walk;
 	struct gz_light_grid *grid;
 	bool everywhere; /* make all cells */
 };
@@ -59,7 +62,7 @@ static bool is_cell_wanted(const struct light_grid_job *job, const int cell[3])
 static void fill_light_cells(const struct light_grid_job *job, const int first[3], int count,
 			     uint16_t *out_cells)
 {
-	const struct gz_light_grid_request *request = job->request;
+	const struct gz_light_walk *walk = &job->walk;
 	const int *edge = job->grid->edge;
 	struct gz_cast_places places = { .active = 0 };
 	float shares[GZ_TILE_RAYS] = { 0 };
@@ -70,7 +73,7 @@ static void fill_light_cells(const struct light_grid_job *job, const int first[3
 		places.active |= (uint32_t)is_cell_wanted(job, cell) << i;
 	}
 	if (places.active)
-		request->arriving(request->cast, request->type, request->nearest, &places, shares);
+		walk->arriving(&walk->cast, walk->type, walk->nearest, &places, shares);
 	for (int i = 0; i < count; i++) {
 		const float rounded = shares[i] * GZ_LIGHT_GRID_UNIT + 0.5F;
 		out_cells[i] = places.active >> i & 1 ? (uint16_t)rounded : GZ_LIGHT_GRID_UNIT;
@@ -92,15 +95,27 @@ static void light_grid_row(void *user, size_t part, int worker)
 	}
 }
 
-static struct gz_light_grid_key key_of(const struct gz_light_grid_request *request)
+static void light_grid_rows(struct light_grid_job *job)
 {
-	const struct gz_cast_shadow *shadow = &request->cast->light.shadow;
+	const int *dims = job->grid->dims;
+	const size_t rows = (size_t)dims[1] * (size_t)dims[2];
+	if (job->request->workers) {
+		gz_workers_run(job->request->workers, light_grid_row, job, rows);
+		return;
+	}
+	for (size_t i = 0; i < rows; i++)
+		light_grid_row(job, i, 0);
+}
+
+static struct gz_light_grid_key key_of(const struct light_grid_job *job)
+{
+	const struct gz_cast_shadow *shadow = &job->walk.cast.light.shadow;
 	struct gz_light_grid_key key = {
 		.steps = shadow->steps,
 		.reach = shadow->reach,
-		.clip = *request->clip,
-		.nearest = request->nearest,
-		.everywhere = request->everywhere,
+		.clip = job->request->rays->clip,
+		.nearest = job->walk.nearest,
+		.everywhere = job->everywhere,
 	};
 	memcpy(key.towards, shadow->towards, sizeof key.towards);
 	return key;
@@ -114,30 +129,43 @@ static bool same_key(const struct gz_light_grid_key *a, const struct gz_light_gr
 	       gz_clip_box_same(&a->clip, &b->clip);
 }
 
-enum gz_result gz_light_grid_make(const struct gz_light_grid_request *request,
-				  struct gz_light_grid *grid)
+static enum gz_result make_light_grid(struct light_grid_job *job)
 {
-	const struct gz_light_grid_key key = key_of(request);
-	struct light_grid_job job = { request, grid, request->everywhere };
+	const struct gz_light_grid_request *request = job->request;
+	struct gz_light_grid *grid = job->grid;
+	const struct gz_light_grid_key key = key_of(job);
 	if (grid->current && same_key(&grid->key, &key))
 		return GZ_OK;
 	grid->current = false;
-	const size_t count = gz_light_grid_lay_out(request->shadows, grid);
+	const size_t count = gz_light_grid_lay_out(&request->lighting->shadows, grid);
 	if (gz_light_cells_reserve(count, &grid->cells, &grid->capacity) != GZ_OK) {
+		gz_err(request->log, "no memory for shadows: set light.shadow_steps to 0");
 		gz_light_grid_free(grid);
 		return GZ_ERR_NO_MEM;
 	}
 	for (int axis = 0; axis < 3; axis++) /* else they reach beyond the next macrocell */
-		job.everywhere = job.everywhere || grid->edge[axis] > MACROCELL;
-	gz_workers_run(request->workers, light_grid_row, &job,
-		       (size_t)grid->dims[1] * (size_t)grid->dims[2]);
+		job->everywhere = job->everywhere || grid->edge[axis] > MACROCELL;
+	light_grid_rows(job);
 	grid->key = key;
 	grid->current = true;
+	grid->serial++;
 	return GZ_OK;
+}
+
+enum gz_result gz_light_grid_make(const struct gz_light_grid_request *request,
+				  struct gz_light_grid *grid)
+{
+	struct light_grid_job job = { .request = request,
+				      .grid = grid,
+				      .everywhere = request->everywhere };
+	const enum gz_result result =
+		gz_light_walk_make(request->lighting, request->arriving, request->rays,
+				   request->ray_frame, request->log, &job.walk);
+	return result == GZ_OK ? make_light_grid(&job) : result;
 }
 
 void gz_light_grid_free(struct gz_light_grid *grid)
 {
 	free(grid->cells);
-	*grid = (struct gz_light_grid) { 0 };
+	*grid = (struct gz_light_grid) { .serial = grid->serial };
 }

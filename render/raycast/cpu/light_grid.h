@@ -13,7 +13,7 @@
 #include "base/result.h"
 #include "base/workers.h"
 #include "render/data/clip_box.h"
-#include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/light_walk.h"
 #include "render/raycast/shared/macrocells.h"
 #include "render/raycast/shared/shadow_cells.h"
 
@@ -33,20 +33,20 @@ struct gz_light_grid {
 	size_t capacity; /**< cells allocated */
 	bool current;    /**< it is for the present volume and transfer function, and for key */
 	struct gz_light_grid_key key;
+	uint64_t serial; /**< increased whenever it is made */
 };
 
 /** What to make a grid of. All pointers are borrowed until the call returns. */
 struct gz_light_grid_request {
-	const struct gz_cast *cast; /**< of the full volume, with shadows */
+	const struct gz_lighting *lighting; /**< prepared for rays, which have shadows */
 	gz_cast_arriving_function *arriving;
-	enum gz_voxel_type type;
-	bool nearest;
-	const struct gz_shadow_cells *shadows;
+	const struct gz_ray_params *rays;
+	const struct gz_ray_frame *ray_frame;
 	/** Of the full volume and the transfer function: only cells around what shows are made. */
 	const struct gz_macrocells *cells;
-	bool everywhere; /**< make all cells: samples may show something elsewhere */
-	const struct gz_clip_box *clip;
-	struct gz_workers *workers;
+	bool everywhere;            /**< make all cells: samples may show something elsewhere */
+	struct gz_workers *workers; /**< NULL: the calling thread alone */
+	const struct gz_log *log;   /**< may be NULL */
 };
 
 /** The volume or the transfer function has changed; memory is kept. */
@@ -59,7 +59,8 @@ size_t gz_light_grid_lay_out(const struct gz_shadow_cells *shadows, struct gz_li
 /**
  * Make the grid if it is not there. It has the same bits for any number of threads.
  *
- * @retval GZ_ERR_NO_MEM  there is no grid; not logged
+ * @retval GZ_ERR_NO_MEM       there is no grid; logged
+ * @retval GZ_ERR_UNSUPPORTED  of gz_light_walk_make(); logged
  */
 enum gz_result gz_light_grid_make(const struct gz_light_grid_request *request,
 				  struct gz_light_grid *grid);

@@ -45,6 +45,7 @@ enum gz_gl_texture_unit {
 	GZ_GL_UNIT_OCCLUSION,
 	GZ_GL_UNIT_COLOURS,
 	GZ_GL_UNIT_CUBE,
+	GZ_GL_UNIT_ARRIVING,
 };
 
 /** Storage buffers, besides those of the plan. */
@@ -74,6 +75,8 @@ struct gz_gl_cast_block {
 	float occlusion_scale[4], occlusion_bias[4]; /**< from places counted from the first datum
 							to those counted from the first cell's */
 	float occlusion_last[4];                     /**< greatest index of a cell */
+	float arriving_scale[4], arriving_bias[4];   /**< the same for the grid of shadows */
+	float arriving_last[4];
 	uint32_t jitter[4];                /**< seed of gz_ray_jitter(); the plan's shift, px */
 	float steps[GZ_PLAN_STEPS_MAX][4]; /**< world units, voxel lengths */
 	uint32_t brick_table[4]; /**< number of the level's first brick; of bricks from one to the
@@ -89,7 +92,8 @@ struct gz_gl_cast_kind {
 	enum gz_voxel_type type;
 	bool nearest;
 	bool segments; /**< pre-integrated */
-	bool shaded;
+	bool shaded;   /**< surfaces are lit */
+	bool shadowed; /**< by the grid of shadows */
 	bool fine;     /**< the transfer table has more than GZ_TRANSFER_TABLE_SIZE entries */
 	bool coloured; /**< voxels have colours of their own */
 	bool hits;     /**< rays end at hits: gz_gl_cast_set_hits() */
@@ -98,14 +102,14 @@ struct gz_gl_cast_kind {
 /** Programs, made when first needed, and buffers. Zero-initialised has none. */
 struct gz_gl_cast {
 	/** OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
-	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2][2];
+	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2][2][2];
 	struct gz_gl_buffer blocks; /**< one for each level of detail */
 	struct gz_gl_buffer counts, staging;
 	struct gz_gl_buffer hits; /**< depth and pixel of each ray, by the place of its tile */
 };
 
 /** Room for the text of gz_gl_cast_defines(). */
-#define GZ_GL_CAST_DEFINES_SIZE 280
+#define GZ_GL_CAST_DEFINES_SIZE 300
 
 /** The source parts that give a shader samples of the volume, their colours and their light:
  *  constants, the uniform block, fetches and shading. They follow the constants of the plan

@@ -179,6 +179,7 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 			  .nearest = gz_ray_samples_nearest(rays, gl->scene.volume),
 			  .segments = rays->integration == GZ_INTEGRATION_PREINTEGRATED,
 			  .shaded = rays->shading == GZ_SHADING_GRADIENT,
+			  .shadowed = rays->light.shadow_steps > 0,
 			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE,
 			  .coloured = gl->scene.volume->colours != NULL,
 			  .hits = hits },
@@ -249,11 +250,6 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 	struct gz_ray_frame world;
 	if (!gl->scene.volume || !gl->scene.has_transfer)
 		return GZ_ERR_INVAL;
-	if (rays->light.shadow_steps > 0) {
-		gz_err(raycaster->log, "only the backend cpu casts shadows in volumes: take it, or "
-				       "set light.shadow_steps to 0");
-		return GZ_ERR_UNSUPPORTED;
-	}
 	enum gz_result result = gz_plan_rays(plan, shot->camera, &world);
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);

@@ -129,6 +129,7 @@ enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
 		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
 	gz_preintegration_forget(&scene->preintegration);
 	gz_lighting_forget(&scene->lighting);
+	gz_light_grid_forget(&scene->light_grid);
 	gz_gl_tables_forget(&scene->tables);
 	gz_gl_bricks_forget(&scene->bricks);
 	scene->has_transfer = true;
@@ -164,39 +165,83 @@ static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_
 	return GZ_OK;
 }
 
-/* Upload the grid of occlusion. */
-static void load_occlusion(struct gz_gl_scene *scene)
+/* Upload a grid of cells. */
+static enum gz_result load_grid(struct gz_gl_grid *grid, const struct gz_gl_device *device,
+				const int dims[3], const uint16_t *cells, const struct gz_log *log)
 {
-	const struct gz_occlusion *grid = &scene->lighting.occlusion;
-	const int *dims = grid->dims;
-	if (memcmp(scene->occlusion_dims, dims, sizeof scene->occlusion_dims) != 0) {
-		if (scene->occlusion)
-			glDeleteTextures(1, &scene->occlusion);
-		scene->occlusion = gz_gl_texture(GL_TEXTURE_3D);
+	for (int axis = 0; axis < 3; axis++)
+		if (dims[axis] > device->texture_edge_max) {
+			gz_err(log,
+			       "light in %d x %d x %d cells is beyond this OpenGL's 3D textures of "
+			       "%d: set light.occlusion and light.shadow_steps to 0, or take "
+			       "--backend cpu",
+			       dims[0], dims[1], dims[2], device->texture_edge_max);
+			return GZ_ERR_UNSUPPORTED;
+		}
+	if (!grid->texture || memcmp(grid->dims, dims, sizeof grid->dims) != 0) {
+		if (grid->texture)
+			glDeleteTextures(1, &grid->texture);
+		grid->texture = gz_gl_texture(GL_TEXTURE_3D);
 		glTexStorage3D(GL_TEXTURE_3D, 1, GL_R16UI, dims[0], dims[1], dims[2]);
-		memcpy(scene->occlusion_dims, dims, sizeof scene->occlusion_dims);
+		memcpy(grid->dims, dims, sizeof grid->dims);
 	}
-	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glBindTexture(GL_TEXTURE_3D, grid->texture);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
 	glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, 0, dims[0], dims[1], dims[2], GL_RED_INTEGER,
-			GL_UNSIGNED_SHORT, grid->cells);
+			GL_UNSIGNED_SHORT, cells);
 	glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
 	glBindTexture(GL_TEXTURE_3D, 0);
+	return GZ_OK;
 }
 
-static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+/* Make the grid of shadows, and upload it if it is new. */
+static enum gz_result prepare_shadows(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				      const struct gz_gl_frame *frame, bool coarser,
+				      const struct gz_log *log)
+{
+	const struct gz_ray_params *rays = frame->rays;
+	const struct gz_light_grid_request request = {
+		.lighting = &scene->lighting,
+		.arriving = gz_cast_kernels_find(NULL)->arriving,
+		.rays = rays,
+		.ray_frame = frame->world,
+		.cells = &scene->detail.cells[0],
+		/* Coarser levels and bricks, and segments from end to end, may show something
+		 * where no voxel does. */
+		.everywhere = coarser || scene->bricked ||
+			      rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+		.workers = workers_of(scene),
+		.log = log,
+	};
+	struct gz_light_grid *grid = &scene->light_grid;
+	enum gz_result result = gz_light_grid_make(&request, grid);
+	if (result != GZ_OK || scene->arriving_serial == grid->serial)
+		return result;
+	result = load_grid(&scene->arriving, device, grid->dims, grid->cells, log);
+	if (result == GZ_OK)
+		scene->arriving_serial = grid->serial;
+	return result;
+}
+
+static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_gl_device *device,
+				    const struct gz_gl_frame *frame, bool coarser,
 				    const struct gz_log *log)
 {
 	struct gz_lighting *lighting = &scene->lighting;
 	const bool was_current = lighting->current;
 	const double radius = lighting->radius;
 	const struct gz_clip_box clip = lighting->clip;
-	const enum gz_result result = gz_lighting_prepare(lighting, scene->volume, scene->table,
-							  rays, workers_of(scene), log);
+	enum gz_result result = gz_lighting_prepare(lighting, scene->volume, scene->table,
+						    frame->rays, workers_of(scene), log);
 	if (result == GZ_OK && lighting->current &&
 	    (!was_current || radius != lighting->radius ||
 	     !gz_clip_box_same(&clip, &lighting->clip)))
-		load_occlusion(scene);
+		result = load_grid(&scene->occlusion, device, lighting->occlusion.dims,
+				   lighting->occlusion.cells, log);
+	if (result != GZ_OK)
+		gz_lighting_forget(lighting); /* else it would count as loaded */
+	if (result == GZ_OK && frame->rays->light.shadow_steps > 0)
+		result = prepare_shadows(scene, device, frame, coarser, log);
 	return result;
 }
 
@@ -296,7 +341,7 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 		prepare_levels(scene, device, log);
 		choose_levels(scene, plan, frame->rays, pixel_lengths, out_levels);
 	}
-	enum gz_result result = prepare_light(scene, frame->rays, log);
+	enum gz_result result = prepare_light(scene, device, frame, coarser, log);
 	if (result == GZ_OK)
 		result = prepare_pictures(scene, device, frame->rays, log);
 	if (result == GZ_OK)
@@ -363,18 +408,34 @@ static void fill_block_surroundings(const struct gz_gl_scene *scene,
 	gz_gl_surroundings_fill(&around, &block->around);
 }
 
+/* From places counted from the first datum to those in a grid of cells. */
+static void fill_block_grid(const struct gz_cast_cells *cells, float scale[4], float bias[4],
+			    float last[4])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		scale[axis] = cells->scale[axis];
+		bias[axis] = cells->bias[axis];
+		last[axis] = cells->greatest[axis];
+	}
+}
+
 static void fill_block_light(const struct gz_gl_scene *scene, const int factor[3],
 			     const struct gz_ray_frame *world, const struct gz_ray_params *rays,
 			     struct gz_gl_cast_block *block)
 {
+	const struct gz_light_grid *grid = &scene->light_grid;
 	struct gz_cast_light light;
 	gz_lighting_fill(&scene->lighting, factor, rays, world, &light);
+	if (rays->light.shadow_steps > 0)
+		gz_cast_cells_fill(grid->cells, grid->dims, grid->edge, factor,
+				   &light.shadow.arriving);
+	fill_block_grid(&light.occluded, block->occlusion_scale, block->occlusion_bias,
+			block->occlusion_last);
+	fill_block_grid(&light.shadow.arriving, block->arriving_scale, block->arriving_bias,
+			block->arriving_last);
 	for (int axis = 0; axis < 3; axis++) {
 		block->light_towards[axis] = light.towards[axis];
 		block->gradient_scale[axis] = light.gradient_scale[axis];
-		block->occlusion_scale[axis] = light.occluded.scale[axis];
-		block->occlusion_bias[axis] = light.occluded.bias[axis];
-		block->occlusion_last[axis] = light.occluded.greatest[axis];
 	}
 	block->light_towards[3] = light.occluded.cells ? light.occlusion : 0;
 	block->light_terms[0] = light.ambient;
@@ -391,9 +452,11 @@ void gz_gl_scene_bind(const struct gz_gl_scene *scene)
 	if (scene->bricked)
 		gz_gl_bricks_bind(&scene->bricks);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_OCCLUSION);
-	glBindTexture(GL_TEXTURE_3D, scene->occlusion);
+	glBindTexture(GL_TEXTURE_3D, scene->occlusion.texture);
 	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_CUBE);
 	glBindTexture(GL_TEXTURE_2D_ARRAY, scene->cube.texture);
+	glActiveTexture(GL_TEXTURE0 + GZ_GL_UNIT_ARRIVING);
+	glBindTexture(GL_TEXTURE_3D, scene->arriving.texture);
 	glActiveTexture(GL_TEXTURE0);
 }
 
@@ -432,6 +495,7 @@ void gz_gl_scene_forget(struct gz_gl_scene *scene)
 	gz_preintegration_free(&scene->preintegration);
 	gz_lighting_free(&scene->lighting);
 	gz_cube_pictures_free(&scene->pictures);
+	gz_light_grid_free(&scene->light_grid);
 	gz_workers_destroy(&scene->workers);
 	free(scene->table);
 	*scene = (struct gz_gl_scene) { 0 };
@@ -442,7 +506,9 @@ void gz_gl_scene_free(struct gz_gl_scene *scene)
 	free_levels(scene);
 	gz_gl_tables_free(&scene->tables);
 	gz_gl_cube_free(&scene->cube);
-	if (scene->occlusion)
-		glDeleteTextures(1, &scene->occlusion);
+	if (scene->occlusion.texture)
+		glDeleteTextures(1, &scene->occlusion.texture);
+	if (scene->arriving.texture)
+		glDeleteTextures(1, &scene->arriving.texture);
 	gz_gl_scene_forget(scene);
 }

@@ -13,6 +13,7 @@
 #include "render/light/cube_pictures.h"
 #include "render/light/gl/gl_cube.h"
 #include "render/picture/camera.h"
+#include "render/raycast/cpu/light_grid.h"
 #include "render/raycast/gl/gl_bricks.h"
 #include "render/raycast/gl/gl_cast.h"
 #include "render/raycast/gl/gl_textures.h"
@@ -22,6 +23,12 @@
 #include "render/raycast/shared/ray_params.h"
 #include "render/reconstruct/gl/gl_plan.h"
 #include "render/transfer/transfer.h"
+
+/** A grid of cells as a texture. */
+struct gz_gl_grid {
+	unsigned texture; /**< 16 bits a cell; 0 = none */
+	int dims[3];      /**< of the texture */
+};
 
 /** Zero-initialised holds nothing. */
 struct gz_gl_scene {
@@ -39,8 +46,11 @@ struct gz_gl_scene {
 	struct gz_lighting lighting;
 	struct gz_cube_pictures pictures; /**< of the surroundings, if they are wanted */
 	struct gz_gl_cube cube;
-	unsigned occlusion;    /**< texture of the grid of occlusion; 0 = none */
-	int occlusion_dims[3]; /**< of the texture */
+	struct gz_gl_grid occlusion;
+	/** Of shadows. The processor makes it, by the kernels of the cpu backend. */
+	struct gz_light_grid light_grid;
+	struct gz_gl_grid arriving;
+	uint64_t arriving_serial; /**< of the grid in the texture */
 };
 
 /**
@@ -70,12 +80,14 @@ struct gz_gl_frame {
 };
 
 /**
- * Prepare a frame: tables of its steps, coarser levels if its rays take them, and the bricks that
- * are loaded.
+ * Prepare a frame: tables of its steps, coarser levels if its rays take them, the bricks that are
+ * loaded, and the grids of light.
  *
  * @param[out] out_levels  which level each kind of tile takes
  * @retval GZ_ERR_NO_MEM  no memory for pre-integrated tables or the list of wanted bricks; logged.
  *                        Without room for coarser levels all rays take the full one
+ * @retval GZ_ERR_UNSUPPORTED  occlusion or shadows need voxels that are not in memory, or cells
+ *                             beyond the device's textures; logged
  */
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				   const struct gz_gl_frame *frame,

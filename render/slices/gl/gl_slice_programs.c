@@ -18,7 +18,7 @@ extern const char gz_glsl_slices_behind_frag[];
 
 static const char slice_units[] = DEFINE("BLENDED", GZ_GL_UNIT_BLENDED);
 
-_Static_assert(GZ_GL_UNIT_BLENDED > GZ_GL_UNIT_CUBE && GZ_GL_UNIT_LAYERS > GZ_GL_UNIT_CUBE,
+_Static_assert(GZ_GL_UNIT_BLENDED > GZ_GL_UNIT_ARRIVING && GZ_GL_UNIT_LAYERS > GZ_GL_UNIT_ARRIVING,
 	       "units of samples stay bound");
 
 /* A fragment shader that knows what the ray caster's shaders know. */

@@ -34,7 +34,7 @@ struct gz_gl_slicer {
 	struct gz_gl_buffer corners, block;
 	unsigned vertices, no_vertices; /* vertex arrays: of the corners, and of nothing */
 	/* OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
-	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2];
+	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2][2];
 	unsigned hide, behind;
 	unsigned queries[QUERIES]; /* samples of each part; 0 = none made yet */
 	int query_count;           /* of this frame */
@@ -63,7 +63,7 @@ static enum gz_result enter_device(const struct gz_gl_slicer *slicer)
 
 static void delete_programs(struct gz_gl_slicer *slicer)
 {
-	const GLuint *programs = &slicer->programs[0][0][0][0][0][0][0];
+	const GLuint *programs = &slicer->programs[0][0][0][0][0][0][0][0];
 	for (size_t i = 0; i < sizeof slicer->programs / sizeof(GLuint); i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);
@@ -179,6 +179,7 @@ static struct gz_gl_cast_kind sample_kind(const struct slicing *slicing, int lev
 		.nearest = gz_ray_samples_nearest(slicing->rays, volume),
 		.segments = slicing->rays->integration == GZ_INTEGRATION_PREINTEGRATED,
 		.shaded = slicing->rays->shading == GZ_SHADING_GRADIENT,
+		.shadowed = slicing->rays->light.shadow_steps > 0,
 		.fine = slicer->scene.table->count > GZ_TRANSFER_TABLE_SIZE,
 		.coloured = volume->colours != NULL,
 	};
@@ -190,7 +191,7 @@ static unsigned slice_program(const struct slicing *slicing, int level)
 	struct gz_gl_slicer *slicer = slicing->slicer;
 	const struct gz_gl_cast_kind kind = sample_kind(slicing, level);
 	unsigned *program = &slicer->programs[kind.texels][kind.type][kind.nearest][kind.segments]
-					     [kind.shaded][kind.fine][kind.coloured];
+					     [kind.shaded][kind.shadowed][kind.fine][kind.coloured];
 	if (!*program) {
 		char defines[GZ_GL_CAST_DEFINES_SIZE];
 		struct gz_gl_shader shaders[2];
@@ -456,13 +457,12 @@ enum gz_result gz_gl_slicer_draw(struct gz_gl_slicer *slicer, const struct gz_sh
 				 struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	const struct gz_plan *plan = shot->plan;
-	struct gz_ray_params rays = *(const struct gz_ray_params *)shot->settings;
-	struct slicing slicing = { .slicer = slicer, .rays = &rays, .plan = plan };
+	const struct gz_ray_params *rays = shot->settings;
+	struct slicing slicing = { .slicer = slicer, .rays = rays, .plan = plan };
 	struct gz_ray_frame world;
-	if (!slicer->scene.volume || !slicer->scene.has_transfer || !gz_ray_params_valid(&rays) ||
+	if (!slicer->scene.volume || !slicer->scene.has_transfer || !gz_ray_params_valid(rays) ||
 	    plan->layer_count < 1)
 		return GZ_ERR_INVAL;
-	rays.light.shadow_steps = 0; /* slices cast no shadows: none are prepared */
 	enum gz_result result = gz_plan_rays(plan, shot->camera, &world);
 	if (result == GZ_OK && image)
 		result = gz_image_resize(image, plan->width, plan->height);
@@ -473,7 +473,7 @@ enum gz_result gz_gl_slicer_draw(struct gz_gl_slicer *slicer, const struct gz_sh
 	slicing.frame = (struct gz_gl_frame) {
 		.camera = shot->camera,
 		.world = &slicing.near_rays,
-		.rays = &rays,
+		.rays = rays,
 		.plan = plan,
 		.wait = slicer->wait_for_bricks,
 	};

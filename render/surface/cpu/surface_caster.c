@@ -290,18 +290,11 @@ static void merge_hits(const struct gz_surface_hits *own, enum gz_surroundings a
  */
 static void fill_field_voxels(const struct field *from, struct gz_cast *voxels)
 {
-	const struct gz_volume *volume = from->volume;
 	const struct gz_macrocells *cells = &from->cells;
-	const int32_t strides[3] = { 1, volume->dims[0], volume->dims[0] * volume->dims[1] };
 	const int32_t cell_strides[3] = { 1, cells->dims[0], cells->dims[0] * cells->dims[1] };
-	voxels->voxels = volume->voxels;
+	gz_cast_fill_voxels(from->volume, voxels);
 	voxels->reach = cells->reach;
 	for (int axis = 0; axis < 3; axis++) {
-		const int dim = volume->dims[axis];
-		voxels->dims[axis] = (float)dim;
-		voxels->last[axis] = dim > 1 ? dim - 2 : 0;
-		/* one voxel along an axis has no neighbour */
-		voxels->stride[axis] = axis == 0 || dim > 1 ? strides[axis] : 0;
 		voxels->cell_last[axis] = (float)(cells->dims[axis] - 1);
 		voxels->cell_stride[axis] = cell_strides[axis];
 	}

@@ -32,7 +32,7 @@ struct Light {
 
 // Samples that are looked up before the first of them is composited, so that their fetches overlap. A lit or
 // coloured sample has enough fetches of its own.
-#if defined(SHADED) || defined(COLOURED)
+#if defined(LIT) || defined(COLOURED)
 #define BATCH 1
 #else
 #define BATCH 4
@@ -120,7 +120,7 @@ void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light 
 	if (opacity > 0.0)
 		colour = own_colour(fma(vec3(k), ray.delta, ray.start));
 #endif
-#ifdef SHADED
+#ifdef LIT
 	if (opacity > 0.0)
 		colour = shade(colour, fma(vec3(k), ray.delta, ray.start));
 #endif

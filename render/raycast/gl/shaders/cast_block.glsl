@@ -13,6 +13,7 @@ layout(std140, binding = 1) uniform Cast
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
 	vec4 gradient_scale; // last: light.reflection
 	vec4 occlusion_scale, occlusion_bias, occlusion_last; // to places among the cells; greatest index
+	vec4 arriving_scale, arriving_bias, arriving_last;    // the same for the grid of shadows
 	uvec4 jitter; // seed, 0 = none; first pixel of the picture in the plan
 	vec4 steps[GZ_PLAN_STEPS_MAX];
 	uvec4 brick_table; // number of the level's first brick; bricks from one to the next along y, z

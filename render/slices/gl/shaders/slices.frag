@@ -54,6 +54,8 @@ void main()
 #endif
 #ifdef SHADED
 		set_up_view(direction, stretch);
+#endif
+#ifdef LIT
 		colour = shade(colour, at);
 #endif
 		float opacity = 1.0 - exp2(extinction * gap.y * stretch);
