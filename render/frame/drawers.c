@@ -185,23 +185,59 @@ static void add_stats(const struct gz_frame_stats *before, struct gz_frame_stats
 	stats->bricks_coming += before->bricks_coming;
 }
 
+/* What the drawers of a picture keep back of the light. */
+struct shades {
+	struct gz_shade of[GZ_DRAWERS_MAX];     /* by drawer */
+	struct gz_shade others[GZ_DRAWERS_MAX]; /* those that fall on one drawer */
+};
+
+_Static_assert(GZ_DRAWERS_MAX <= GZ_SHADES_MAX, "a shot holds the shades of all other drawers");
+
+static enum gz_result find_shades(const struct gz_drawers *drawers, const struct gz_shot *shot,
+				  struct shades *shades)
+{
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < drawers->count && result == GZ_OK; i++) {
+		struct gz_drawer *drawer = drawers->items[i].drawer;
+		if (drawer->ops->shade)
+			result = drawer->ops->shade(drawer, shot, &shades->of[i]);
+	}
+	return result;
+}
+
+/* Put into the shot of one drawer the shades of the others. */
+static void take_shades_of_others(size_t drawer, size_t count, struct shades *shades,
+				  struct gz_shot *shot)
+{
+	shot->shades = shades->others;
+	shot->shade_count = 0;
+	for (size_t i = 0; i < count; i++)
+		if (i != drawer && shades->of[i].find)
+			shades->others[shot->shade_count++] = shades->of[i];
+}
+
 enum gz_result gz_drawers_draw(struct gz_drawers *drawers, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	const size_t last = drawers->count - 1;
 	struct gz_frame_stats sum = { 0 }, stats = { 0 };
 	struct gz_shot joined = *shot;
+	struct shades shades = { 0 };
 	enum gz_result result = GZ_OK;
 	if (last > 0) {
 		joined.hits = &drawers->hits;
 		result = gz_ray_hits_clear(&drawers->hits, shot->plan);
 	}
+	if (last > 0 && result == GZ_OK)
+		result = find_shades(drawers, shot, &shades);
 	for (size_t i = 0; i < last && result == GZ_OK; i++) {
 		struct gz_drawer *drawer = drawers->items[i].drawer;
+		take_shades_of_others(i, drawers->count, &shades, &joined);
 		result = drawer->ops->cast_hits(drawer, &joined, &stats);
 		add_stats(&stats, &sum);
 	}
 	struct gz_drawer *drawer = drawers->items[last].drawer;
+	take_shades_of_others(last, drawers->count, &shades, &joined);
 	if (result == GZ_OK)
 		result = drawer->ops->draw(drawer, &joined, image, &stats);
 	add_stats(&sum, &stats);

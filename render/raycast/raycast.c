@@ -85,6 +85,18 @@ enum gz_result gz_raycaster_draw(struct gz_raycaster *raycaster, const struct gz
 	return raycaster->ops->draw(raycaster, shot, image, out_stats);
 }
 
+enum gz_result gz_raycaster_shade(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+				  struct gz_shade *out_shade)
+{
+	const struct gz_ray_params *rays = shot->settings;
+	if (!gz_ray_params_valid(rays))
+		return GZ_ERR_INVAL;
+	if (rays->light.shadow_steps > 0)
+		return raycaster->ops->shade(raycaster, shot, out_shade);
+	*out_shade = (struct gz_shade) { 0 };
+	return GZ_OK;
+}
+
 enum gz_result gz_raycaster_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,
 				   const struct gz_ray_params *rays, const struct gz_plan *plan,
 				   struct gz_image *image, struct gz_frame_stats *out_stats)
@@ -191,6 +203,12 @@ static enum gz_result raycast_draw(struct gz_drawer *drawer, const struct gz_sho
 	return result;
 }
 
+static enum gz_result raycast_shade(struct gz_drawer *drawer, const struct gz_shot *shot,
+				    struct gz_shade *out_shade)
+{
+	return gz_raycaster_shade(raycast_of(drawer)->raycaster, shot, out_shade);
+}
+
 static unsigned raycast_picture_texture(const struct gz_drawer *drawer)
 {
 	return gz_raycaster_picture_texture(((const struct raycast_drawer *)drawer)->raycaster);
@@ -222,6 +240,7 @@ static const struct gz_drawer_ops raycast_ops = {
 	.show = raycast_show,
 	.bound_plan = raycast_bound_plan,
 	.draw = raycast_draw,
+	.shade = raycast_shade,
 	.keeps_on_device = raycast_keeps_on_device,
 	.picture_texture = raycast_picture_texture,
 	.backend = raycast_backend,

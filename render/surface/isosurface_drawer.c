@@ -62,6 +62,8 @@ static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
 		.rays = shot->settings,
 		.plan = shot->plan,
 		.hits = shot->hits,
+		.shades = shot->shades,
+		.shade_count = shot->shade_count,
 	};
 }
 
@@ -100,6 +102,16 @@ static enum gz_result isosurface_cast_hits(struct gz_drawer *drawer, const struc
 		       : result;
 }
 
+static enum gz_result isosurface_shade(struct gz_drawer *drawer, const struct gz_shot *shot,
+				       struct gz_shade *out_shade)
+{
+	struct isosurface_drawer *self = isosurface_of(drawer);
+	const struct gz_surface_shot surfaces = surface_shot_of(shot);
+	const enum gz_result result = add_caster(self);
+	return result == GZ_OK ? gz_surface_caster_shade(self->caster, &surfaces, out_shade)
+			       : result;
+}
+
 static bool isosurface_keeps_on_device(const struct gz_drawer *drawer)
 {
 	return isosurface_read(drawer)->raster != NULL;
@@ -136,6 +148,7 @@ static const struct gz_drawer_ops isosurface_ops = {
 	.show = isosurface_show,
 	.draw = isosurface_draw,
 	.cast_hits = isosurface_cast_hits,
+	.shade = isosurface_shade,
 	.keeps_on_device = isosurface_keeps_on_device,
 	.picture_texture = isosurface_picture_texture,
 	.backend = isosurface_backend,

@@ -20,6 +20,7 @@
 #include "render/picture/image.h"
 #include "render/plan/plan.h"
 #include "render/technique/ray_hits.h"
+#include "render/technique/shade.h"
 #include "render/transfer/transfer.h"
 
 struct gz_gl_context;
@@ -88,6 +89,9 @@ struct gz_shot {
 	/** What others have drawn into the picture; NULL: nothing. GZ_SHARES_AS_OPAQUE: put in what
 	 *  lies nearer. GZ_SHARES_AS_CLEAR: end the rays there, in front of these pixels. */
 	struct gz_ray_hits *hits;
+	/** What others in the picture keep back of the light; at most GZ_SHADES_MAX. */
+	const struct gz_shade *shades;
+	size_t shade_count;
 };
 
 struct gz_drawer;
@@ -116,6 +120,11 @@ struct gz_drawer_ops {
 	 *  lies nearer into shot->hits, which is there. Fails as draw does. */
 	enum gz_result (*cast_hits)(struct gz_drawer *drawer, const struct gz_shot *shot,
 				    struct gz_frame_stats *out_stats);
+	/** Optional: NULL if it keeps no light from others. Say what the objects keep back of the
+	 *  light of a picture in which others are, too. Called before draw and cast_hits with the
+	 *  same shot, of which hits and shades must not be read. Fails as draw does. */
+	enum gz_result (*shade)(struct gz_drawer *drawer, const struct gz_shot *shot,
+				struct gz_shade *out_shade);
 	/** Whether pictures can stay on the device. If not, draw needs an image. */
 	bool (*keeps_on_device)(const struct gz_drawer *drawer);
 	/** OpenGL's name of the texture (RGBA8, row 0 on top) that holds the last picture drawn

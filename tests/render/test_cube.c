@@ -118,7 +118,7 @@ static void draw_surroundings(struct gz_surface_caster *caster, const struct loo
 	struct gz_ray_params rays = gz_ray_params_default();
 	struct gz_camera camera = { .fov_deg = look->fov_deg };
 	struct gz_plan plan = { 0 };
-	const struct gz_surface_shot shot = { &camera, &rays, &plan, NULL };
+	const struct gz_surface_shot shot = { .camera = &camera, .rays = &rays, .plan = &plan };
 	memcpy(camera.look_at, look->ahead, sizeof camera.look_at);
 	memcpy(camera.up, look->up, sizeof camera.up);
 	rays.surface.isovalue = 1e6;

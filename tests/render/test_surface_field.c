@@ -60,7 +60,9 @@ static void cast_field(struct gz_surface_caster *caster, struct field_stage *sta
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	const struct gz_surface_planes planes = { &stage->depth, &stage->ids };
 	struct gz_plan plan = { 0 };
-	const struct gz_surface_shot shot = { &stage->camera, &stage->rays, &plan, NULL };
+	const struct gz_surface_shot shot = { .camera = &stage->camera,
+					      .rays = &stage->rays,
+					      .plan = &plan };
 	assert_int_equal(gz_plan_make(&full, &display, (struct gz_point) { 0.5F, 0.5F }, WIDTH,
 				      HEIGHT, &plan),
 			 GZ_OK);

@@ -64,7 +64,9 @@ static void draw_glass(struct glass_stage *stage, int threads, const char *simd)
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	const struct gz_surface_planes planes = { &stage->depth, &stage->ids };
 	struct gz_plan plan = { 0 };
-	const struct gz_surface_shot shot = { &stage->camera, &stage->rays, &plan, NULL };
+	const struct gz_surface_shot shot = { .camera = &stage->camera,
+					      .rays = &stage->rays,
+					      .plan = &plan };
 	struct gz_surface_caster *caster = NULL;
 	assert_int_equal(gz_plan_make(&full, &display, (struct gz_point) { 0.5F, 0.5F }, WIDTH,
 				      HEIGHT, &plan),
@@ -365,7 +367,9 @@ static int count_sky_hits(enum gz_surroundings kind)
 	struct gz_ray_hits hits = { 0 };
 	const struct gz_foveation full = gz_foveation_full();
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
-	const struct gz_surface_shot shot = { &stage.camera, &stage.rays, &plan, &hits };
+	const struct gz_surface_shot shot = {
+		.camera = &stage.camera, .rays = &stage.rays, .plan = &plan, .hits = &hits
+	};
 	struct gz_surface_caster *caster = NULL;
 	int count = 0;
 	set_up_glass(field_ball, &stage);

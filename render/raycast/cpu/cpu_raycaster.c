@@ -12,6 +12,7 @@
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/fine_cells.h"
 #include "render/raycast/cpu/light_grid.h"
+#include "render/raycast/cpu/volume_shade.h"
 #include "render/raycast/shared/brick_stream.h"
 #include "render/raycast/shared/detail.h"
 #include "render/raycast/shared/lighting.h"
@@ -101,6 +102,7 @@ struct cpu_raycaster {
 	struct gz_lighting lighting;
 	struct gz_light_grid light_grid;
 	struct gz_cube_pictures pictures; /* of the surroundings, if they are wanted */
+	struct gz_volume_shade shade;     /* on others in the picture */
 	struct gz_lattices lattices;
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
@@ -535,9 +537,10 @@ static void surround_casts(const struct cpu_raycaster *cpu, const struct gz_ray_
 }
 
 /* Make the grid of shadows, if the frame has them. */
-static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_ray_params *rays,
+static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_shot *shot,
 				  const struct gz_ray_frame *ray_frame, struct cast_job *job)
 {
+	const struct gz_ray_params *rays = shot->settings;
 	if (rays->light.shadow_steps == 0)
 		return GZ_OK;
 	/* What coarser levels show, and segments from end to end, may lie where no voxel does. */
@@ -549,6 +552,8 @@ static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_ray
 		.cells = &cpu->detail.cells[0],
 		.everywhere =
 			job->cast_count > 1 || rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+		.shades = shot->shades,
+		.shade_count = shot->shade_count,
 		.workers = cpu->workers,
 		.log = cpu->base.log,
 	};
@@ -609,7 +614,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	if (result == GZ_OK && cpu->volume->bricks)
 		result = take_bricks(cpu, camera, rays, &job);
 	if (result == GZ_OK)
-		result = light_casts(cpu, rays, &ray_frame, &job);
+		result = light_casts(cpu, shot, &ray_frame, &job);
 	if (result != GZ_OK)
 		return result;
 	surround_casts(cpu, rays, &job);
@@ -630,6 +635,25 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	return GZ_OK;
 }
 
+static enum gz_result cpu_shade(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+				struct gz_shade *out_shade)
+{
+	struct cpu_raycaster *cpu = cpu_of(raycaster);
+	const struct gz_ray_params *rays = shot->settings;
+	struct gz_ray_frame ray_frame;
+	if (!cpu->volume || !cpu->has_transfer)
+		return GZ_ERR_INVAL;
+	enum gz_result result = gz_camera_rays(shot->camera, shot->plan->view.width,
+					       shot->plan->view.height, &ray_frame);
+	if (result == GZ_OK)
+		result = gz_lighting_prepare(&cpu->lighting, cpu->volume, cpu->table, rays,
+					     cpu->workers, raycaster->log);
+	return result == GZ_OK
+		       ? gz_volume_shade_make(&cpu->lighting, cpu->kernels->arriving, rays,
+					      &ray_frame, raycaster->log, &cpu->shade, out_shade)
+		       : result;
+}
+
 static const char *cpu_describe(const struct gz_raycaster *raycaster)
 {
 	return ((const struct cpu_raycaster *)raycaster)->description;
@@ -641,6 +665,7 @@ const struct gz_raycaster_ops gz_cpu_raycaster_ops = {
 	.set_volume = cpu_set_volume,
 	.set_transfer = cpu_set_transfer,
 	.draw = cpu_draw,
+	.shade = cpu_shade,
 	.describe = cpu_describe,
 	.destroy = cpu_destroy,
 };

@@ -1,9 +1,11 @@
 #include "render/raycast/cpu/light_grid.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/light/light_cells.h"
+#include "render/light/light_constants.h"
 
 #define GZ_LOG_MODULE "render"
 
@@ -16,6 +18,8 @@ struct light_grid_job {
 	struct gz_light_walk walk;
 	struct gz_light_grid *grid;
 	bool everywhere; /* make all cells */
+	/* For shades: a voxel and the first datum in the world, and GZ_SHADOW_START. */
+	float world_per_voxel[3], first_datum[3], start;
 };
 
 void gz_light_grid_forget(struct gz_light_grid *grid)
@@ -58,6 +62,28 @@ static bool is_cell_wanted(const struct light_grid_job *job, const int cell[3])
 	return cells->distance[row * (size_t)cells->dims[0] + macrocell_of(job, 0, cell[0])] <= 1;
 }
 
+/* Multiply the shares of cells by what others let through. */
+static void dim_cells_by_shades(const struct light_grid_job *job,
+				const struct gz_cast_places *places, float shares[GZ_TILE_RAYS])
+{
+	const struct gz_light_grid_request *request = job->request;
+	struct gz_shade_places asked = { .from = job->start };
+	for (int i = 0; i < GZ_TILE_RAYS; i++) {
+		const bool active = places->active >> i & 1 && shares[i] > 0;
+		asked.active |= (uint32_t)active << i;
+		for (int axis = 0; axis < 3; axis++)
+			asked.at[axis][i] = places->at[axis][i] * job->world_per_voxel[axis] +
+					    job->first_datum[axis];
+	}
+	for (size_t k = 0; k < request->shade_count && asked.active; k++) {
+		float through[GZ_SHADE_PLACES];
+		request->shades[k].find(request->shades[k].user, &asked, through);
+		for (int i = 0; i < GZ_TILE_RAYS; i++)
+			if (asked.active >> i & 1)
+				shares[i] *= through[i];
+	}
+}
+
 /* Fill some cells of a row, from one on. */
 static void fill_light_cells(const struct light_grid_job *job, const int first[3], int count,
 			     uint16_t *out_cells)
@@ -74,6 +100,8 @@ static void fill_light_cells(const struct light_grid_job *job, const int first[3
 	}
 	if (places.active)
 		walk->arriving(&walk->cast, walk->type, walk->nearest, &places, shares);
+	if (places.active && job->request->shade_count > 0)
+		dim_cells_by_shades(job, &places, shares);
 	for (int i = 0; i < count; i++) {
 		const float rounded = shares[i] * GZ_LIGHT_GRID_UNIT + 0.5F;
 		out_cells[i] = places.active >> i & 1 ? (uint16_t)rounded : GZ_LIGHT_GRID_UNIT;
@@ -118,6 +146,8 @@ static struct gz_light_grid_key key_of(const struct light_grid_job *job)
 		.everywhere = job->everywhere,
 	};
 	memcpy(key.towards, shadow->towards, sizeof key.towards);
+	for (size_t i = 0; i < job->request->shade_count; i++)
+		key.shades[i] = job->request->shades[i].revision;
 	return key;
 }
 
@@ -126,7 +156,31 @@ static bool same_key(const struct gz_light_grid_key *a, const struct gz_light_gr
 	return a->steps == b->steps && a->reach == b->reach && a->nearest == b->nearest &&
 	       a->everywhere == b->everywhere && a->towards[0] == b->towards[0] &&
 	       a->towards[1] == b->towards[1] && a->towards[2] == b->towards[2] &&
+	       memcmp(a->shades, b->shades, sizeof a->shades) == 0 &&
 	       gz_clip_box_same(&a->clip, &b->clip);
+}
+
+/* Whether the grid that is there is the one that is asked for. */
+static bool is_grid_current(const struct light_grid_job *job, const struct gz_light_grid_key *key)
+{
+	for (size_t i = 0; i < job->request->shade_count; i++)
+		if (key->shades[i] == 0)
+			return false;
+	return job->grid->current && same_key(&job->grid->key, key);
+}
+
+/* Find where cells are in the world. */
+static void place_in_world(struct light_grid_job *job)
+{
+	const struct gz_volume *volume = job->request->lighting->volume;
+	double half[3];
+	gz_volume_half_extent(volume, half);
+	for (int axis = 0; axis < 3; axis++) {
+		const double edge = 2 * half[axis] / volume->dims[axis];
+		job->world_per_voxel[axis] = (float)edge;
+		job->first_datum[axis] = (float)(edge / 2 - half[axis]);
+	}
+	job->start = (float)(GZ_SHADOW_START * gz_volume_voxel_length(volume));
 }
 
 static enum gz_result make_light_grid(struct light_grid_job *job)
@@ -134,7 +188,7 @@ static enum gz_result make_light_grid(struct light_grid_job *job)
 	const struct gz_light_grid_request *request = job->request;
 	struct gz_light_grid *grid = job->grid;
 	const struct gz_light_grid_key key = key_of(job);
-	if (grid->current && same_key(&grid->key, &key))
+	if (is_grid_current(job, &key))
 		return GZ_OK;
 	grid->current = false;
 	const size_t count = gz_light_grid_lay_out(&request->lighting->shadows, grid);
@@ -145,6 +199,7 @@ static enum gz_result make_light_grid(struct light_grid_job *job)
 	}
 	for (int axis = 0; axis < 3; axis++) /* else they reach beyond the next macrocell */
 		job->everywhere = job->everywhere || grid->edge[axis] > MACROCELL;
+	place_in_world(job);
 	light_grid_rows(job);
 	grid->key = key;
 	grid->current = true;

@@ -16,6 +16,7 @@
 #include "render/raycast/cpu/light_walk.h"
 #include "render/raycast/shared/macrocells.h"
 #include "render/raycast/shared/shadow_cells.h"
+#include "render/technique/shade.h"
 
 /** What a grid was made of, beside the volume and the transfer function. */
 struct gz_light_grid_key {
@@ -23,6 +24,7 @@ struct gz_light_grid_key {
 	float reach, towards[3];
 	struct gz_clip_box clip;
 	bool nearest, everywhere;
+	uint64_t shades[GZ_SHADES_MAX]; /**< revisions; 0: none */
 };
 
 /** The grid. Zero-initialised is empty; its memory is reused when it is made again. */
@@ -44,7 +46,11 @@ struct gz_light_grid_request {
 	const struct gz_ray_frame *ray_frame;
 	/** Of the full volume and the transfer function: only cells around what shows are made. */
 	const struct gz_macrocells *cells;
-	bool everywhere;            /**< make all cells: samples may show something elsewhere */
+	bool everywhere; /**< make all cells: samples may show something elsewhere */
+	/** What others keep back of the light before it enters the volume and within it. What is
+	 *  nearer to a cell than GZ_SHADOW_START keeps nothing back, as in the volume. */
+	const struct gz_shade *shades;
+	size_t shade_count;
 	struct gz_workers *workers; /**< NULL: the calling thread alone */
 	const struct gz_log *log;   /**< may be NULL */
 };
@@ -57,7 +63,8 @@ void gz_light_grid_forget(struct gz_light_grid *grid);
 size_t gz_light_grid_lay_out(const struct gz_shadow_cells *shadows, struct gz_light_grid *grid);
 
 /**
- * Make the grid if it is not there. It has the same bits for any number of threads.
+ * Make the grid if it is not there. A shade of unknown revision is asked anew. It has the same bits
+ * for any number of threads.
  *
  * @retval GZ_ERR_NO_MEM       there is no grid; logged
  * @retval GZ_ERR_UNSUPPORTED  of gz_light_walk_make(); logged

@@ -262,6 +262,8 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 		.world = &world,
 		.rays = rays,
 		.plan = plan,
+		.shades = shot->shades,
+		.shade_count = shot->shade_count,
 		.wait = gl->wait_for_bricks,
 	};
 	result = prepare_frame(gl, &frame);
@@ -285,6 +287,19 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 	return result;
 }
 
+static enum gz_result gl_shade(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+			       struct gz_shade *out_shade)
+{
+	struct gl_raycaster *gl = gl_of(raycaster);
+	struct gz_ray_frame world;
+	if (!gl->scene.volume || !gl->scene.has_transfer)
+		return GZ_ERR_INVAL;
+	const enum gz_result result = gz_plan_rays(shot->plan, shot->camera, &world);
+	return result == GZ_OK ? gz_gl_scene_shade(&gl->scene, shot->settings, &world,
+						   raycaster->log, out_shade)
+			       : result;
+}
+
 static unsigned gl_picture_texture(const struct gz_raycaster *raycaster)
 {
 	return ((const struct gl_raycaster *)raycaster)->colours.picture;
@@ -301,6 +316,7 @@ const struct gz_raycaster_ops gz_gl_raycaster_ops = {
 	.set_volume = gl_set_volume,
 	.set_transfer = gl_set_transfer,
 	.draw = gl_draw,
+	.shade = gl_shade,
 	.picture_texture = gl_picture_texture,
 	.describe = gl_describe,
 	.destroy = gl_destroy,

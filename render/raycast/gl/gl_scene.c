@@ -210,6 +210,8 @@ static enum gz_result prepare_shadows(struct gz_gl_scene *scene, const struct gz
 		 * where no voxel does. */
 		.everywhere = coarser || scene->bricked ||
 			      rays->integration == GZ_INTEGRATION_PREINTEGRATED,
+		.shades = frame->shades,
+		.shade_count = frame->shade_count,
 		.workers = workers_of(scene),
 		.log = log,
 	};
@@ -227,19 +229,15 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_g
 				    const struct gz_gl_frame *frame, bool coarser,
 				    const struct gz_log *log)
 {
-	struct gz_lighting *lighting = &scene->lighting;
-	const bool was_current = lighting->current;
-	const double radius = lighting->radius;
-	const struct gz_clip_box clip = lighting->clip;
-	enum gz_result result = gz_lighting_prepare(lighting, scene->volume, scene->table,
+	const struct gz_lighting *lighting = &scene->lighting;
+	enum gz_result result = gz_lighting_prepare(&scene->lighting, scene->volume, scene->table,
 						    frame->rays, workers_of(scene), log);
-	if (result == GZ_OK && lighting->current &&
-	    (!was_current || radius != lighting->radius ||
-	     !gz_clip_box_same(&clip, &lighting->clip)))
+	if (result == GZ_OK && lighting->current && scene->occlusion_serial != lighting->serial) {
 		result = load_grid(&scene->occlusion, device, lighting->occlusion.dims,
 				   lighting->occlusion.cells, log);
-	if (result != GZ_OK)
-		gz_lighting_forget(lighting); /* else it would count as loaded */
+		if (result == GZ_OK)
+			scene->occlusion_serial = lighting->serial;
+	}
 	if (result == GZ_OK && frame->rays->light.shadow_steps > 0)
 		result = prepare_shadows(scene, device, frame, coarser, log);
 	return result;
@@ -254,6 +252,18 @@ static enum gz_result prepare_pictures(struct gz_gl_scene *scene, const struct g
 		gz_cube_pictures_prepare(&scene->pictures, &rays->environment, log, &prepare_ms);
 	return result == GZ_OK ? gz_gl_cube_bind(&scene->cube, device, &scene->pictures,
 						 GZ_GL_UNIT_CUBE, log)
+			       : result;
+}
+
+enum gz_result gz_gl_scene_shade(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+				 const struct gz_ray_frame *world, const struct gz_log *log,
+				 struct gz_shade *out_shade)
+{
+	const enum gz_result result = gz_lighting_prepare(
+		&scene->lighting, scene->volume, scene->table, rays, workers_of(scene), log);
+	return result == GZ_OK ? gz_volume_shade_make(&scene->lighting,
+						      gz_cast_kernels_find(NULL)->arriving, rays,
+						      world, log, &scene->shade, out_shade)
 			       : result;
 }
 

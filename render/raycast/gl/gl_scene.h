@@ -14,6 +14,7 @@
 #include "render/light/gl/gl_cube.h"
 #include "render/picture/camera.h"
 #include "render/raycast/cpu/light_grid.h"
+#include "render/raycast/cpu/volume_shade.h"
 #include "render/raycast/gl/gl_bricks.h"
 #include "render/raycast/gl/gl_cast.h"
 #include "render/raycast/gl/gl_textures.h"
@@ -47,10 +48,12 @@ struct gz_gl_scene {
 	struct gz_cube_pictures pictures; /**< of the surroundings, if they are wanted */
 	struct gz_gl_cube cube;
 	struct gz_gl_grid occlusion;
+	uint64_t occlusion_serial; /**< of the grid in the texture */
 	/** Of shadows. The processor makes it, by the kernels of the cpu backend. */
 	struct gz_light_grid light_grid;
 	struct gz_gl_grid arriving;
-	uint64_t arriving_serial; /**< of the grid in the texture */
+	uint64_t arriving_serial;     /**< of the grid in the texture */
+	struct gz_volume_shade shade; /**< on others in the picture */
 };
 
 /**
@@ -76,6 +79,8 @@ struct gz_gl_frame {
 	double near; /**< depth at which they begin, in lengths of their directions */
 	const struct gz_ray_params *rays;
 	const struct gz_plan *plan;
+	const struct gz_shade *shades; /**< of others on the volume */
+	size_t shade_count;
 	bool wait; /**< wait until all bricks are there that have room */
 };
 
@@ -92,6 +97,11 @@ struct gz_gl_frame {
 enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				   const struct gz_gl_frame *frame,
 				   struct gz_gl_tile_levels *out_levels, const struct gz_log *log);
+
+/** Say what the volume keeps back of the light, as gz_raycaster_shade() does. Needs no context. */
+enum gz_result gz_gl_scene_shade(struct gz_gl_scene *scene, const struct gz_ray_params *rays,
+				 const struct gz_ray_frame *world, const struct gz_log *log,
+				 struct gz_shade *out_shade);
 
 /** Fill in @p block for a level: rays and volume in the level's voxel coordinates, and what all
  * levels share. After gz_gl_scene_prepare() with the same frame. */

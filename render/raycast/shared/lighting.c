@@ -42,6 +42,7 @@ static enum gz_result prepare_occlusion(struct gz_lighting *lighting,
 	lighting->radius = radius;
 	lighting->clip = rays->clip;
 	lighting->current = true;
+	lighting->serial++;
 	return GZ_OK;
 }
 

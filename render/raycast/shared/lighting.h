@@ -59,7 +59,8 @@ struct gz_cast_light {
 /** Zero-initialised holds nothing. */
 struct gz_lighting {
 	struct gz_occlusion occlusion;
-	bool current; /**< occlusion is for the present transfer function, radius and clip */
+	uint64_t serial; /**< increased whenever occlusion is made */
+	bool current;    /**< occlusion is for the present transfer function, radius and clip */
 	double radius;
 	struct gz_clip_box clip;
 	struct gz_shadow_cells shadows;

@@ -33,6 +33,9 @@ struct gz_raycaster_ops {
 	/** See gz_raycaster_draw(). */
 	enum gz_result (*draw)(struct gz_raycaster *raycaster, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats);
+	/** See gz_raycaster_shade(); only with light.shadow_steps. */
+	enum gz_result (*shade)(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+				struct gz_shade *out_shade);
 	/** Optional: see gz_drawer_ops. */
 	unsigned (*picture_texture)(const struct gz_raycaster *raycaster);
 	/** One line for reports, as in "avx512, 2 threads". */
@@ -84,7 +87,8 @@ enum gz_result gz_raycaster_set_transfer(struct gz_raycaster *raycaster,
  * Cast the plan's rays and reconstruct the picture. Every pixel is written.
  *
  * @param shot   its settings are a struct gz_ray_params. A ray ends at its hit, if hits are there:
- *               the pixel of the hit takes the place of the background
+ *               the pixel of the hit takes the place of the background. With light.shadow_steps
+ *               the shades of others fall on the volume
  * @param image  resized to the plan's size; NULL leaves the picture on the device
  * @param[out] out_stats  may be NULL
  * @retval GZ_ERR_INVAL   no volume or transfer function, or an invalid camera or parameter
@@ -98,6 +102,17 @@ enum gz_result gz_raycaster_set_transfer(struct gz_raycaster *raycaster,
  */
 enum gz_result gz_raycaster_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
 				 struct gz_image *image, struct gz_frame_stats *out_stats);
+
+/**
+ * Say what the volume keeps back of the light: with light.shadow_steps as many steps from each
+ * place, GZ_SHADOW_START voxel lengths away from it or where the way enters the clip box, whichever
+ * is farther. Without, nothing.
+ *
+ * @param[out] out_shade  borrows from the ray caster until gz_raycaster_draw() of the same shot
+ * @return the failures of gz_raycaster_draw() but GZ_ERR_NO_DEVICE
+ */
+enum gz_result gz_raycaster_shade(struct gz_raycaster *raycaster, const struct gz_shot *shot,
+				  struct gz_shade *out_shade);
 
 /** gz_raycaster_draw() of a shot without hits. */
 enum gz_result gz_raycaster_render(struct gz_raycaster *raycaster, const struct gz_camera *camera,

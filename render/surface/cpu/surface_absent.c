@@ -41,6 +41,14 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	return GZ_ERR_UNSUPPORTED;
 }
 
+enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
+				       const struct gz_surface_shot *shot,
+				       struct gz_shade *out_shade)
+{
+	(void)caster, (void)shot, (void)out_shade;
+	return GZ_ERR_UNSUPPORTED;
+}
+
 struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster)
 {
 	(void)caster;

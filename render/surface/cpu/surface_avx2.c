@@ -3,4 +3,5 @@
 
 #include "render/surface/cpu/surface_kernel.h"
 
-const struct gz_surface_kernel gz_surface_avx2 = { "avx2", "avx2", cast_surface_tile };
+const struct gz_surface_kernel gz_surface_avx2 = { "avx2", "avx2", cast_surface_tile,
+						   find_lit_places };

@@ -12,6 +12,7 @@
 #include "render/raycast/cpu/cast.h"
 #include "render/surface/cpu/embree.h"
 #include "render/surface/shared/surface_frame.h"
+#include "render/technique/shade.h"
 
 /** Rays of a tile, which are one packet. */
 #define GZ_SURFACE_RAYS 16
@@ -54,6 +55,8 @@ struct gz_surface_cast {
 	unsigned mesh_count;
 	struct gz_surface_field field;
 	struct gz_surface_frame frame;
+	const struct gz_shade *shades; /**< of others on the surfaces */
+	size_t shade_count;
 };
 
 /** The rays of a tile. */
@@ -79,11 +82,20 @@ typedef void gz_surface_tile_function(const struct gz_surface_cast *cast,
 				      const struct gz_surface_tile *tile,
 				      struct gz_surface_hits *out_hits);
 
+/** Find which places the light reaches past the surfaces: gz_shade.find, with 1 or 0 for a share.
+ */
+typedef void gz_surface_lit_function(const struct gz_surface_cast *cast,
+				     const struct gz_shade_places *places,
+				     float out_shares[GZ_SHADE_PLACES]);
+
+_Static_assert(GZ_SHADE_PLACES == GZ_SURFACE_RAYS, "the places of a shade are a packet");
+
 /** The kernel of one instruction set. */
 struct gz_surface_kernel {
 	const char *name; /**< as in struct gz_cast_kernels */
 	const char *isa;  /**< the same set in the configuration of Embree's devices */
 	gz_surface_tile_function *tile;
+	gz_surface_lit_function *lit;
 };
 
 extern const struct gz_surface_kernel gz_surface_portable;

@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,6 +50,9 @@ struct gz_surface_caster {
 	int source; /* enum gz_surface_source: what the tree was made for */
 	struct field field;
 	struct gz_cube_pictures cube;
+	uint64_t revision;          /* of what keeps light back: next_revision() */
+	struct gz_surface_cast own; /* what the shade of the picture reads */
+	double shade_ms;            /* for surfaces, since the last picture */
 	struct gz_lattices lattices[PLANE_COUNT];
 	char description[64];
 };
@@ -172,6 +176,13 @@ static double stored_isovalue(const struct gz_volume *volume, double isovalue)
 	return (isovalue - volume->intercept) / volume->slope;
 }
 
+/* A number that no surfaces of this process have had. */
+static uint64_t next_revision(void)
+{
+	static atomic_uint_fast64_t last;
+	return atomic_fetch_add(&last, 1) + 1;
+}
+
 /* Find the range of the volume's cells. */
 static enum gz_result build_field(struct gz_surface_caster *caster, const struct gz_object *object)
 {
@@ -223,6 +234,7 @@ static enum gz_result prepare_field(struct gz_surface_caster *caster, double iso
 		gz_isosurface_warn_of_emptiness(field->volume, isovalue, caster->log);
 	field->isovalue = isovalue;
 	field->current = true;
+	caster->revision = next_revision();
 	return GZ_OK;
 }
 
@@ -248,6 +260,7 @@ static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
 	if (result != GZ_OK)
 		return result;
 	caster->tree_current = true;
+	caster->revision = next_revision();
 	*out_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	const struct gz_surface_size size = gz_surface_caster_size(caster);
 	gz_debug(caster->log, "%zu triangles: surfaces %.0f ms, %zu bytes; tree %.0f ms, %zu bytes",
@@ -390,6 +403,55 @@ static void reconstruct_planes(struct gz_surface_caster *caster, const struct su
 	}
 }
 
+/* What all rays of a picture share. After the surfaces are made. */
+static void fill_surface_cast(struct gz_surface_caster *caster, const struct gz_surface_shot *shot,
+			      const struct gz_ray_frame *frame, struct gz_surface_cast *cast)
+{
+	*cast = (struct gz_surface_cast) {
+		.tree = caster->tree.scene,
+		.meshes = caster->listed,
+		.mesh_count = (unsigned)caster->meshes.count,
+		.shades = shot->shades,
+		.shade_count = shot->shade_count,
+	};
+	colour_meshes(caster, &shot->rays->surface);
+	fill_field(caster, cast);
+	cast->frame = gz_surface_frame_make(&caster->meshes, &caster->cube, shot->rays, frame);
+}
+
+/* struct gz_shade, find */
+static void find_lit_by_kernel(const void *user, const struct gz_shade_places *places,
+			       float out_shares[GZ_SHADE_PLACES])
+{
+	const struct gz_surface_caster *caster = user;
+	caster->kernel->lit(&caster->own, places, out_shares);
+}
+
+enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
+				       const struct gz_surface_shot *shot,
+				       struct gz_shade *out_shade)
+{
+	const struct gz_plan_view *view = &shot->plan->view;
+	struct gz_ray_frame frame;
+	if (caster->meshes.count < 1 || !gz_ray_params_valid(shot->rays))
+		return GZ_ERR_INVAL;
+	*out_shade = (struct gz_shade) { 0 };
+	if (!shot->rays->surface.shadows || shot->rays->surface.material == GZ_MATERIAL_GLASS)
+		return GZ_OK;
+	double prepare_ms = 0;
+	enum gz_result result = gz_camera_rays(shot->camera, view->width, view->height, &frame);
+	if (result == GZ_OK)
+		result = prepare_surfaces(caster, &shot->rays->surface, &prepare_ms);
+	caster->shade_ms += prepare_ms;
+	if (result != GZ_OK)
+		return result;
+	fill_surface_cast(caster, shot, &frame, &caster->own);
+	*out_shade = (struct gz_shade) { .find = find_lit_by_kernel,
+					 .user = caster,
+					 .revision = caster->revision };
+	return GZ_OK;
+}
+
 enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 				      const struct gz_surface_shot *shot, struct gz_image *image,
 				      const struct gz_surface_planes *planes,
@@ -418,12 +480,9 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	if (result != GZ_OK)
 		return result;
 	const int64_t prepared_ns = gz_clock_now_ns();
-	job.cast.tree = caster->tree.scene;
-	colour_meshes(caster, &shot->rays->surface);
-	job.cast.meshes = caster->listed;
-	job.cast.mesh_count = (unsigned)caster->meshes.count;
-	fill_field(caster, &job.cast);
-	job.cast.frame = gz_surface_frame_make(&caster->meshes, &caster->cube, shot->rays, &frame);
+	prepare_ms += caster->shade_ms;
+	caster->shade_ms = 0;
+	fill_surface_cast(caster, shot, &frame, &job.cast);
 	gz_workers_run(caster->workers, cast_surface_part, &job,
 		       (plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
 	const int64_t cast_ns = gz_clock_now_ns();

@@ -71,6 +71,18 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 				      const struct gz_surface_planes *planes,
 				      struct gz_frame_stats *out_stats);
 
+/**
+ * Say which places of a picture the surfaces keep the light from: those behind them, with
+ * isosurface.shadows. Makes the surfaces as gz_surface_caster_draw() does, which tells the time.
+ *
+ * @param[out] out_shade  its shares are 0 and 1; borrows from the caster until it draws the next
+ *                        picture
+ * @return the failures of gz_surface_caster_draw()
+ */
+enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
+				       const struct gz_surface_shot *shot,
+				       struct gz_shade *out_shade);
+
 /** How much the triangles of the last picture take. */
 struct gz_surface_size {
 	size_t triangles;

@@ -34,6 +34,12 @@ SIMD void lift_places(const struct gz_surface_mesh *mesh, const struct meeting *
 	}
 }
 
+/* Whether the way from a surface to the light is looked at. */
+SIMD int follows_light(const struct gz_surface_cast *cast)
+{
+	return cast->frame.shadows || cast->shade_count > 0;
+}
+
 /* Begin the shadow rays, a little above the surface because places are rounded. */
 SIMD void aim_shadows(const struct gz_surface_cast *cast, unsigned number, const struct meeting *at,
 		      const struct view *view, struct lanes lanes, struct packet *packet)
@@ -107,7 +113,7 @@ SIMD vm light_lanes(const struct gz_surface_cast *cast, unsigned number, struct 
 		mirror_lanes(cast, &at, &view, lanes, packet);
 	for (int channel = 0; channel < 3; channel++)
 		put_lanes(mask, vf_set(mesh->colour[channel]), packet->colour[channel] + first);
-	if (!cast->frame.shadows)
+	if (!follows_light(cast))
 		return mask;
 	aim_shadows(cast, number, &at, &view, lanes, packet);
 	return vm_and(mask, vf_less(vf_set(cast->frame.light.ambient), shine.factor));
@@ -178,6 +184,30 @@ SIMD void darken_lanes(const struct gz_surface_cast *cast, int first, struct pac
 	put_lanes(dark, vf_set(0), packet->white + first);
 }
 
+/* Take from the light what others keep back of it, where no surface does. */
+static __attribute__((noinline)) void dim_by_shades(const struct gz_surface_cast *cast,
+						    struct packet *packet)
+{
+	const struct RTCRay16 *ray = &packet->shadow;
+	const float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	const float ambient = cast->frame.light.ambient;
+	struct gz_shade_places places = { .active = 0 };
+	for (int i = 0; i < GZ_SURFACE_RAYS; i++) {
+		places.active |= (uint32_t)(packet->valid[i] && ray->tfar[i] >= 0) << i;
+		for (int axis = 0; axis < 3; axis++)
+			places.at[axis][i] = origins[axis][i] * cast->frame.world_per_mm;
+	}
+	for (size_t k = 0; k < cast->shade_count && places.active; k++) {
+		float shares[GZ_SHADE_PLACES];
+		cast->shades[k].find(cast->shades[k].user, &places, shares);
+		for (int i = 0; i < GZ_SURFACE_RAYS; i++) {
+			const float share = places.active >> i & 1 ? shares[i] : 1;
+			packet->factor[i] = ambient + share * (packet->factor[i] - ambient);
+			packet->white[i] *= share;
+		}
+	}
+}
+
 SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const struct packet *packet,
 		       struct gz_surface_hits *hits)
 {
@@ -243,6 +273,47 @@ SIMD void follow_through_glass(const struct gz_surface_cast *cast, struct packet
 	}
 }
 
+/* Aim rays from some places to the light, as far as the clip box reaches. */
+SIMD void aim_from_places(const struct gz_surface_cast *cast, const struct gz_shade_places *places,
+			  int first, struct packet *packet)
+{
+	struct RTCRay16 *ray = &packet->shadow;
+	float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
+	const vf mm = vf_set(1 / cast->frame.world_per_mm);
+	const vf towards[3] = { vf_set(cast->frame.light.towards[0]),
+				vf_set(cast->frame.light.towards[1]),
+				vf_set(cast->frame.light.towards[2]) };
+	vm valid = vm_from_bits(places->active >> first);
+	vf place[3], from = vf_set(places->from) * mm, to = vf_set(INFINITY);
+	begin_shadows(cast, first, packet);
+	for (int axis = 0; axis < 3; axis++)
+		place[axis] = vf_load(places->at[axis] + first) * mm;
+	if (cast->frame.clipped)
+		valid = vm_and(valid, clip_lanes(cast, place, towards, &from, &to));
+	for (int axis = 0; axis < 3; axis++)
+		put_lanes(valid, place[axis], origins[axis] + first);
+	put_lanes(valid, from, ray->tnear + first);
+	put_lanes(valid, to, ray->tfar + first);
+	store_mask(valid, packet->valid + first);
+}
+
+/* gz_surface_lit_function */
+static void find_lit_places(const struct gz_surface_cast *cast,
+			    const struct gz_shade_places *places, float out_shares[GZ_SHADE_PLACES])
+{
+	struct packet packet;
+	EACH_REGISTER aim_from_places(cast, places, first, &packet);
+	gz_embree_occluded(packet.valid, cast->tree, true, &packet.shadow);
+	if (cast->field.on)
+		EACH_REGISTER shade_by_field(cast, first, &packet);
+	EACH_REGISTER
+	{
+		const vm valid = load_mask(packet.valid + first);
+		const vm met = vf_less(vf_load(packet.shadow.tfar + first), vf_set(0));
+		vf_store(out_shares + first, vf_select(vm_and(valid, met), vf_set(0), vf_set(1)));
+	}
+}
+
 /* Cast a tile: gz_surface_tile_function. */
 static void cast_surface_tile(const struct gz_surface_cast *cast,
 			      const struct gz_surface_tile *tile, struct gz_surface_hits *out_hits)
@@ -252,7 +323,7 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 	EACH_REGISTER
 	{
 		aim_lanes(cast, tile, first, &packet);
-		if (cast->frame.shadows)
+		if (follows_light(cast))
 			begin_shadows(cast, first, &packet);
 	}
 	meet_surfaces(cast, &packet);
@@ -268,6 +339,8 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 			EACH_REGISTER shade_by_field(cast, first, &packet);
 		EACH_REGISTER darken_lanes(cast, first, &packet);
 	}
+	if (cast->shade_count > 0 && any_lit)
+		dim_by_shades(cast, &packet);
 	EACH_REGISTER colour_lanes(cast, first, &packet, out_hits);
 }
 

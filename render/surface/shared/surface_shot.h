@@ -5,11 +5,14 @@
 #ifndef GZ_RENDER_SURFACE_SHARED_SURFACE_SHOT_H
 #define GZ_RENDER_SURFACE_SHARED_SURFACE_SHOT_H
 
+#include <stddef.h>
+
 #include "render/picture/camera.h"
 #include "render/picture/plane.h"
 #include "render/plan/plan.h"
 #include "render/raycast/shared/ray_params.h"
 #include "render/technique/ray_hits.h"
+#include "render/technique/shade.h"
 
 /** Planes beside the colours of a picture; NULL: not wanted. */
 struct gz_surface_planes {
@@ -25,6 +28,9 @@ struct gz_surface_shot {
 	const struct gz_plan *plan;
 	/** Takes what lies nearer than what it has; NULL: not wanted. Only rays fill it. */
 	struct gz_ray_hits *hits;
+	/** What others in the picture keep back of the light. Only rays look it up. */
+	const struct gz_shade *shades;
+	size_t shade_count;
 };
 
 #endif
