@@ -41,6 +41,14 @@ class Window(WindowCase):
             pictures[key] = self.below_line(before)
         self.assertEqual(len(set(pictures.values())), 4)
 
+    def test_method_that_the_scene_lacks_a_table_for_says_so(self):
+        self.start("--gaze", "mouse")
+        before = self.rest().part(0, 0, *SIZE)
+        self.tool("key", "7")
+        self.until(lambda p: p.part(0, 0, *SIZE) != before, "a notice")
+        self.tool("key", "q")
+        self.assertIn("names no table of spacings", self.messages())
+
     def test_moved_gaze_makes_its_place_sharp(self):
         self.start("--gaze", "mouse", "--method", "standard")
         self.move(100, 100)

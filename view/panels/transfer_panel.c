@@ -450,7 +450,9 @@ static enum gz_transfer_wish draw_file_row(struct gz_transfer_panel *panel)
 		wish = GZ_TRANSFER_WISH_SAVE;
 	gz_widgets_enable();
 	gz_widgets_same_line(0);
-	gz_widget_label(gz_transfer_edit_differs(panel->edit) ? "changed" : "as saved");
+	gz_widget_label(gz_transfer_edit_differs(panel->edit) ? "changed"
+			: panel->file[0]                      ? "as saved"
+							      : "not saved");
 	return wish;
 }
 

@@ -9,12 +9,19 @@
 #include "view/settings/scene_keys.h"
 #include "view/window/window_state.h"
 
+#define GZ_LOG_MODULE "window"
+
 static void choose_method(struct gz_window *window, int method)
 {
 	if (!window->maker)
 		return;
-	if (gz_methods[method].needs_table && window->settings.foveation.table.count == 0)
-		return; /* the scene has no table of spacings */
+	if (gz_methods[method].needs_table && window->settings.foveation.table.count == 0) {
+		gz_warn(window->log,
+			"the scene names no table of spacings, which the method %s needs: give "
+			"--foveation.table FILE",
+			gz_method_names[method]);
+		return;
+	}
 	window->settings.foveation.method = method;
 	window->cast_needed = true;
 }

@@ -119,7 +119,8 @@ static void draw_cost_row(struct gz_paint paint, const char *name, const char *m
 static void draw_cost_numbers(const struct gz_frame_history *history)
 {
 	char name[48], median[24], p95[24];
-	snprintf(name, sizeof name, "%zu frames, ms", history->count);
+	snprintf(name, sizeof name, "%zu frame%s, ms", history->count,
+		 history->count == 1 ? "" : "s");
 	draw_cost_row(gz_paint_plain, name, "median", "p95");
 	for (int part = 0; part <= GZ_FRAME_PARTS; part++) {
 		const bool total = part == GZ_FRAME_PARTS;
