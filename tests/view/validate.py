@@ -52,7 +52,7 @@ class Validate(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server, cls.display = start_server(SCREEN)
-        cls.screen = Screen(cls.display, SCREEN)
+        cls.screen = Screen(cls.server, cls.display, SCREEN)
 
     @classmethod
     def tearDownClass(cls):
@@ -146,7 +146,7 @@ class Validate(unittest.TestCase):
 
     def grab(self):
         """The green of the screen, which is grey."""
-        return self.screen.grab()[1]
+        return self.screen.grab()[1::4]
 
     def until(self, good, what):
         deadline = time.monotonic() + PATIENCE_S

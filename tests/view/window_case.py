@@ -36,7 +36,7 @@ class WindowCase(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.server, display = start_server(SCREEN)
-        cls.screen = Screen(display, SCREEN)
+        cls.screen = Screen(cls.server, display, SCREEN)
         cls.place = tempfile.TemporaryDirectory(prefix="gazecast-test-window-")
         cls.environment = dict(
             os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1",
@@ -107,14 +107,15 @@ class WindowCase(unittest.TestCase):
 
     def grab(self):
         """A screenshot: one that stays for a moment, unless the window never rests."""
-        planes = self.screen.grab()
+        shown = self.screen.grab()
         for _ in range(5):
-            before, planes = planes, self.screen.grab()
-            if planes == before:
+            time.sleep(0.02)
+            before, shown = shown, self.screen.grab()
+            if shown == before:
                 break
         width, height = SCREEN
         pixels = bytearray(3 * width * height)
-        pixels[0::3], pixels[1::3], pixels[2::3] = planes
+        pixels[0::3], pixels[1::3], pixels[2::3] = shown[2::4], shown[1::4], shown[0::4]
         rows = [bytes(pixels[3 * width * y : 3 * width * (y + 1)]) for y in range(height)]
         return Picture(width, height, rows)
 

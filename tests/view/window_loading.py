@@ -248,7 +248,7 @@ class WindowLoading(WindowCase):
             server, display = start_server(SCREEN)
             self.addCleanup(server.kill)
             self.environment = dict(kept, DISPLAY=display)
-            self.screen = Screen(display, SCREEN)
+            self.screen = Screen(server, display, SCREEN)
             self.launch(*words)
             self.until(self.shows_something if words and words[0] == SCENE else self.bar, "a window")
             self.screen.close()
