@@ -320,6 +320,19 @@ class Validate(unittest.TestCase):
 
         self.until(lambda: abs(width() - 0.6 * px_per_deg) <= 2.5, "a disc of 0.6 degrees")
         self.assertLess(self.dot, 20)
+        # It has its final size: nothing more is drawn.
+        self.until(lambda: self.processor_s(viewer, 0.5) < 0.03, "a window at rest")
+
+    def processor_s(self, process, seconds):
+        """Processor time that a process takes in so many seconds."""
+        def ticks():
+            with open("/proc/%d/stat" % process.pid, encoding="ascii") as stat:
+                fields = stat.read().rsplit(")", 1)[1].split()
+            return int(fields[11]) + int(fields[12])
+
+        before = ticks()
+        time.sleep(seconds)  # the time that is measured
+        return (ticks() - before) / os.sysconf("SC_CLK_TCK")
 
     def answer(self, text):
         """A check on a terminal, its question answered with @text. -> what the terminal showed"""

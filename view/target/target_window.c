@@ -27,9 +27,21 @@
 /* Time of a frame with V-sync off, s (chosen). */
 #define FRAME_S (1.0 / 120)
 
+/* The longest wait while nothing changes, s. Chosen: a lost context is noticed soon enough. */
+#define REST_S 0.1
+
 /* Generated from shaders/ by the build. */
 extern const char gz_glsl_quad_vert[];
 extern const char gz_glsl_target_frag[];
+
+/* All that a frame shows. */
+struct target_frame {
+	int width, height; /* of the framebuffer, px */
+	bool started;      /* without instructions */
+	bool there;        /* with a target */
+	struct gz_point at;
+	double deg; /* px in a degree of the target at its present scale */
+};
 
 struct target_window {
 	const struct gz_view_options *options;
@@ -39,10 +51,12 @@ struct target_window {
 	bool has_widgets;
 	GLuint program, vertices;
 	struct gz_targets targets;
-	size_t index;     /* of the current or next target */
-	bool started;     /* the instructions were confirmed */
-	int64_t shown_ns; /* time the target appeared; 0: not yet */
-	bool space;       /* Space was pressed since the last frame */
+	size_t index;              /* of the current or next target */
+	bool started;              /* the instructions were confirmed */
+	int64_t shown_ns;          /* time the target appeared; 0: not yet */
+	struct target_frame frame; /* the last one drawn */
+	bool damaged;              /* it has to be drawn again */
+	bool space;                /* Space was pressed since the last frame */
 	bool cancelled;
 };
 
@@ -70,6 +84,12 @@ static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, i
 		window->cancelled = true;
 	if (key == GLFW_KEY_SPACE)
 		window->space = true;
+}
+
+static void on_target_damage(GLFWwindow *glfw)
+{
+	struct target_window *window = glfwGetWindowUserPointer(glfw);
+	window->damaged = true;
 }
 
 /* The monitor with the tracker's display size in px, otherwise the primary one. */
@@ -123,6 +143,7 @@ static enum gz_result open_target_drawing(struct target_window *window)
 	glGenVertexArrays(1, &window->vertices);
 	glfwSetWindowUserPointer(window->glfw, window);
 	glfwSetKeyCallback(window->glfw, on_target_key);
+	glfwSetWindowRefreshCallback(window->glfw, on_target_damage);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
 	window->has_widgets = gz_widgets_init(window->glfw, window->options->interface_scale);
 	return window->has_widgets ? GZ_OK : GZ_ERR_UNSUPPORTED;
@@ -200,29 +221,42 @@ static void set_number(const struct target_window *window, const char *name, dou
 	glUniform1f(glGetUniformLocation(window->program, name), (float)value);
 }
 
-/* Draw the background and the current target, if any. */
-static void draw_target(const struct target_window *window)
+static struct target_frame present_frame(const struct target_window *window)
 {
-	int width, height;
-	glfwGetFramebufferSize(window->glfw, &width, &height);
-	bool there = window->started && window->index < window->targets.count;
-	struct gz_point at = there ? window->targets.target[window->index].point
-				   : (struct gz_point) { 0.5f, 0.5f };
-	double deg =
-		target_px_per_deg(window, width, height) * target_scale(window, gz_clock_now_ns());
-	double dot = fmax(DOT_MIN_PX, deg * GZ_TARGET_DOT_DEG / 2);
-	glViewport(0, 0, width, height);
+	struct target_frame frame = { .started = window->started, .at = { 0.5f, 0.5f } };
+	glfwGetFramebufferSize(window->glfw, &frame.width, &frame.height);
+	frame.there = window->started && window->index < window->targets.count;
+	if (frame.there)
+		frame.at = window->targets.target[window->index].point;
+	frame.deg = target_px_per_deg(window, frame.width, frame.height) *
+		    target_scale(window, gz_clock_now_ns());
+	return frame;
+}
+
+static bool frames_equal(const struct target_frame *a, const struct target_frame *b)
+{
+	return a->width == b->width && a->height == b->height && a->started == b->started &&
+	       a->there == b->there && a->at.x == b->at.x && a->at.y == b->at.y && a->deg == b->deg;
+}
+
+/* Draw the background and the current target, if any. */
+static void draw_target_frame(const struct target_window *window, const struct target_frame *frame)
+{
+	const float width = (float)frame->width, height = (float)frame->height;
+	const double dot = fmax(DOT_MIN_PX, frame->deg * GZ_TARGET_DOT_DEG / 2);
+	const double disc = fmax(3 * dot, frame->deg * GZ_TARGET_DISC_DEG / 2);
+	glViewport(0, 0, frame->width, frame->height);
 	glDisable(GL_BLEND);
 	glUseProgram(window->program);
-	glUniform2f(glGetUniformLocation(window->program, "size"), (float)width, (float)height);
-	glUniform2f(glGetUniformLocation(window->program, "centre"), at.x * (float)width,
-		    at.y * (float)height);
-	set_number(window, "radius", there ? fmax(3 * dot, deg * GZ_TARGET_DISC_DEG / 2) : 0);
+	glUniform2f(glGetUniformLocation(window->program, "size"), width, height);
+	glUniform2f(glGetUniformLocation(window->program, "centre"), frame->at.x * width,
+		    frame->at.y * height);
+	set_number(window, "radius", frame->there ? disc : 0);
 	set_number(window, "dot_radius", dot);
 	set_number(window, "arm", dot);
 	glBindVertexArray(window->vertices);
 	glDrawArrays(GL_TRIANGLES, 0, 3);
-	if (window->started)
+	if (frame->started)
 		return;
 	gz_widgets_begin();
 	gz_marks_draw_message(instructions_of(&window->options->target));
@@ -245,15 +279,25 @@ static void tell_time(const char *what)
 	fflush(stdout);
 }
 
-/* Show what was drawn. */
-static void swap_target(struct target_window *window)
+/* Show what there is now, unless it is on the screen and no instructions are. @return whether it
+ * has changed */
+static bool show_frame(struct target_window *window)
 {
+	const struct target_frame frame = present_frame(window);
+	const bool appears = frame.there && !window->shown_ns;
+	const bool changes = appears || !frames_equal(&frame, &window->frame);
+	if (!changes && !window->damaged && window->started)
+		return false;
+	draw_target_frame(window, &frame);
+	window->frame = frame;
+	window->damaged = false;
 	glfwSwapBuffers(window->glfw);
-	if (!window->started || window->shown_ns || window->index >= window->targets.count)
-		return;
+	if (!appears)
+		return changes;
 	glFinish();
 	window->shown_ns = gz_clock_now_ns();
 	tell_shown(window);
+	return true;
 }
 
 /* Whether the next target is due. */
@@ -264,6 +308,16 @@ static bool target_is_over(const struct target_window *window)
 		return false;
 	bool time = gz_ns_to_s(gz_clock_now_ns() - window->shown_ns) >= options->duration_s;
 	return time && (options->advance == GZ_TARGET_ADVANCE_AUTO || window->space);
+}
+
+/* How long the screen may stay as it is if no event comes, s. */
+static double rest_s(const struct target_window *window)
+{
+	if (!window->shown_ns)
+		return REST_S;
+	const double since_s = gz_ns_to_s(gz_clock_now_ns() - window->shown_ns);
+	const double left_s = window->options->target.duration_s - since_s;
+	return left_s > 0 ? fmin(left_s, REST_S) : REST_S;
 }
 
 /* Go to the next target if it is due. Space counts only while the window waits for it. */
@@ -296,9 +350,8 @@ static enum gz_result show_targets(struct target_window *window)
 {
 	tell_screen(window);
 	while (window->index < window->targets.count) {
-		draw_target(window);
-		swap_target(window);
-		glfwWaitEventsTimeout(FRAME_S);
+		const bool changes = show_frame(window);
+		glfwWaitEventsTimeout(changes ? FRAME_S : rest_s(window));
 		if (gz_glfw_context_lost()) {
 			gz_err(window->log, "the graphics driver lost the window's context: no "
 					    "more targets are shown; start again");
@@ -311,8 +364,7 @@ static enum gz_result show_targets(struct target_window *window)
 		}
 		advance_targets(window);
 	}
-	draw_target(window);
-	swap_target(window);
+	show_frame(window);
 	tell_time("finished");
 	return GZ_OK;
 }
