@@ -36,7 +36,8 @@ struct recorded recorded_read(const char *recordings, const char *name)
 			count_sample(&recorded, &record.sample, &last_ns);
 		} else if (record.kind == GZ_GAZE_LOG_GAP) {
 			recorded.outages += record.missing == 0;
-			recorded.missing += record.missing;
+			/* Those before the first sample are no gap between two. */
+			recorded.missing += recorded.samples > 0 ? record.missing : 0;
 		}
 	}
 	recorded.ending = gz_gaze_log_ending(reader);

@@ -14,7 +14,7 @@ struct recorded {
 	uint64_t samples;
 	uint64_t first_seq, last_seq;
 	uint64_t outages;   /**< gap records without a number of samples: the tracker was gone */
-	uint64_t missing;   /**< samples reported missing by gap records */
+	uint64_t missing;   /**< samples that gap records behind the first sample report missing */
 	int64_t longest_ns; /**< longest time between two samples, host time */
 	int64_t backwards;  /**< samples whose host time is not after that of the last one */
 	uint64_t malformed; /**< malformed lines */
