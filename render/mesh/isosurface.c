@@ -113,16 +113,22 @@ static void sum_rows(struct gz_iso_job *job, uint64_t *out_vertices, uint64_t *o
 	*out_triangles = triangles;
 }
 
-static enum gz_result refuse_mesh(enum gz_result result, uint64_t vertices, uint64_t triangles,
-				  const struct gz_log *log)
+/* Make room for a mesh of so many vertices and triangles, or say why there is none. */
+static enum gz_result allocate_surface(const struct gz_iso_job *job, uint64_t vertices,
+				       uint64_t triangles, const struct gz_log *log,
+				       struct gz_mesh *mesh)
 {
+	const uint64_t most = job->elements_max;
+	const bool fits = vertices <= most && triangles <= most;
+	const enum gz_result result =
+		fits ? gz_mesh_allocate(vertices, triangles, mesh) : GZ_ERR_FULL;
 	if (result == GZ_ERR_FULL)
 		gz_err(log,
 		       "the surface has %" PRIu64 " vertices and %" PRIu64
-		       " triangles, more than %" PRId32
+		       " triangles, more than %" PRIu64
 		       "; choose another isovalue or a smaller volume",
-		       vertices, triangles, GZ_MESH_COUNT_MAX);
-	else
+		       vertices, triangles, most);
+	else if (result != GZ_OK)
 		gz_err(log,
 		       "not enough memory for a surface of %" PRIu64 " vertices and %" PRIu64
 		       " triangles",
@@ -139,9 +145,9 @@ static enum gz_result extract(struct gz_iso_job *job, struct gz_workers *workers
 	do_all_rows(job, workers, job->row_count, gz_iso_classify_row);
 	do_all_rows(job, workers, job->row_count, job->kernels->count_row);
 	sum_rows(job, &vertices, &triangles);
-	const enum gz_result result = gz_mesh_allocate(vertices, triangles, mesh);
+	const enum gz_result result = allocate_surface(job, vertices, triangles, log, mesh);
 	if (result != GZ_OK)
-		return refuse_mesh(result, vertices, triangles, log);
+		return result;
 	job->mesh = mesh;
 	do_all_rows(job, workers, job->row_count, write_row);
 	return GZ_OK;
@@ -206,6 +212,7 @@ enum gz_result gz_isosurface_make(const struct gz_isosurface_request *request,
 		.blocks = request->blocks,
 		.isovalue = (float)((request->isovalue - volume->intercept) / volume->slope),
 		.falling = volume->slope < 0,
+		.elements_max = gz_mesh_count_limit(request->elements_max),
 	};
 	struct gz_mesh mesh = { 0 };
 	if (!certainly_empty(volume, job.isovalue)) {

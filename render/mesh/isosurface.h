@@ -41,6 +41,8 @@ struct gz_isosurface_request {
 	const struct gz_volume *volume;       /**< in memory; borrowed */
 	double isovalue;                      /**< data value: slope and intercept applied */
 	const struct gz_value_blocks *blocks; /**< optional: makes skipping faster; borrowed */
+	/** Most vertices, and most triangles; 0 or more than GZ_MESH_COUNT_MAX: that many. */
+	uint64_t elements_max;
 	bool portable; /**< without the loops for AVX2, which give the same bits: for comparison */
 };
 
@@ -59,7 +61,7 @@ struct gz_isosurface_request {
  * warning
  * @retval GZ_ERR_INVAL        the isovalue is not finite; logged
  * @retval GZ_ERR_UNSUPPORTED  the volume is stored in bricks; logged
- * @retval GZ_ERR_FULL         more than GZ_MESH_COUNT_MAX vertices or triangles; logged
+ * @retval GZ_ERR_FULL         more vertices or triangles than elements_max; logged
  * @retval GZ_ERR_NO_MEM       logged
  *
  * Memory besides the mesh: a bit for each voxel and 12 bytes for each row of voxels.

@@ -34,9 +34,10 @@ struct gz_iso_job {
 	const struct gz_value_blocks *blocks; /**< may be NULL */
 	float isovalue;                       /**< stored value */
 	bool falling;                         /**< data values fall as stored values rise */
-	size_t words;                         /**< of a row, with one of zeros at its end */
-	size_t row_count;                     /**< of voxels */
-	uint32_t *bits;                       /**< row_count rows */
+	uint64_t elements_max; /**< of the request, as gz_mesh_count_limit() has it */
+	size_t words;          /**< of a row, with one of zeros at its end */
+	size_t row_count;      /**< of voxels */
+	uint32_t *bits;        /**< row_count rows */
 	uint8_t *known; /**< with blocks: enum gz_iso_known of each word of each row of blocks */
 	struct gz_iso_row *rows; /**< one more than there are, for the sums */
 	float *places[3];        /**< mm, of each voxel along x, y, z */

@@ -20,6 +20,7 @@ struct net_row {
 
 struct net_job {
 	const struct gz_label_index *index;
+	uint64_t elements_max;
 	struct gz_label_net *net;
 	struct net_row *rows; /* one for each row of corners, and the ends */
 	size_t width;         /* voxels of a row with the layer round it */
@@ -277,18 +278,22 @@ static enum gz_result sum_net_rows(struct net_job *job, size_t rows, const struc
 	}
 	job->net->vertex_count = sum.vertex;
 	job->net->face_count = sum.face;
-	if (sum.vertex <= GZ_MESH_COUNT_MAX && sum.face <= GZ_MESH_COUNT_MAX)
+	if (sum.vertex <= job->elements_max && sum.face <= job->elements_max)
 		return GZ_OK;
 	gz_err(log,
 	       "the surfaces of labels have %" PRIu64 " vertices and %" PRIu64
-	       " faces, more than %" PRId32 "; use a smaller volume",
-	       sum.vertex, sum.face, GZ_MESH_COUNT_MAX);
+	       " faces, more than %" PRIu64 "; use a smaller volume",
+	       sum.vertex, sum.face, job->elements_max);
 	return GZ_ERR_FULL;
 }
 
 static bool allocate_net(struct gz_label_net *net)
 {
 	const size_t vertices = net->vertex_count + 1, faces = net->face_count + 1;
+	const size_t vertex_bytes =
+		sizeof *net->corners + sizeof *net->places + sizeof *net->neighbours;
+	if (!gz_memory_fits_machine(vertices * vertex_bytes + faces * sizeof *net->faces))
+		return false;
 	net->corners = malloc(vertices * sizeof *net->corners);
 	net->places = malloc(vertices * sizeof *net->places);
 	net->neighbours = malloc(vertices * sizeof *net->neighbours);
@@ -296,11 +301,12 @@ static bool allocate_net(struct gz_label_net *net)
 	return net->corners && net->places && net->neighbours && net->faces;
 }
 
-enum gz_result gz_label_net_make(const struct gz_label_index *index, struct gz_workers *workers,
-				 const struct gz_log *log, struct gz_label_net *out_net)
+enum gz_result gz_label_net_make(const struct gz_label_index *index, uint64_t elements_max,
+				 struct gz_workers *workers, const struct gz_log *log,
+				 struct gz_label_net *out_net)
 {
 	struct gz_label_net net = { 0 };
-	struct net_job job = { .index = index, .net = &net };
+	struct net_job job = { .index = index, .elements_max = elements_max, .net = &net };
 	for (int axis = 0; axis < 3; axis++)
 		job.corners[axis] = index->dims[axis] + 1;
 	job.width = (size_t)index->dims[0] + 2;

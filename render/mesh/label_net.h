@@ -30,12 +30,14 @@ struct gz_label_net {
 /**
  * Make the net of a volume's labels, unsmoothed.
  *
+ * @param elements_max  most vertices, and most faces; at most GZ_MESH_COUNT_MAX
  * @param[out] out_net  written on GZ_OK; gz_label_net_free()
- * @retval GZ_ERR_FULL    more than GZ_MESH_COUNT_MAX vertices or faces; logged
+ * @retval GZ_ERR_FULL    more vertices or faces; logged
  * @retval GZ_ERR_NO_MEM  not logged
  */
-enum gz_result gz_label_net_make(const struct gz_label_index *index, struct gz_workers *workers,
-				 const struct gz_log *log, struct gz_label_net *out_net);
+enum gz_result gz_label_net_make(const struct gz_label_index *index, uint64_t elements_max,
+				 struct gz_workers *workers, const struct gz_log *log,
+				 struct gz_label_net *out_net);
 
 /** Smooth it: @p pairs of steps. GZ_ERR_NO_MEM: not logged. */
 enum gz_result gz_label_net_smooth(struct gz_label_net *net, const int dims[3], int pairs,

@@ -1,5 +1,6 @@
 #include "render/mesh/label_surfaces.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -50,6 +51,7 @@ struct splitting {
 	const struct gz_label_index *index;
 	const struct gz_label_net *net;
 	const double *spacing;
+	uint64_t elements_max;                /* of the request, as gz_mesh_count_limit() has it */
 	const struct gz_label_names *names;   /* NULL: none */
 	size_t (*offsets)[GZ_LABELS_MAX + 2]; /* of each chunk, by label */
 	uint32_t *uses;                       /* of faces, by label */
@@ -237,18 +239,24 @@ static void describe_label(const struct splitting *splitting, struct gz_label_su
 		memcpy(surface->colour, known->colour, sizeof surface->colour);
 }
 
+static uint64_t triangles_of(const struct splitting *splitting, size_t label)
+{
+	return 2 * (uint64_t)(splitting->first[label + 1] - splitting->first[label]);
+}
+
 static void split_label(void *user, size_t label, int worker)
 {
 	const struct splitting *splitting = user;
-	const size_t first = splitting->first[label], end = splitting->first[label + 1];
 	uint32_t *local = splitting->local + (size_t)worker * splitting->net->vertex_count;
 	struct gz_label_surface *surface = &splitting->surfaces->items[label];
 	surface->number = splitting->index->numbers[label];
 	surface->voxels = splitting->index->voxels[label];
 	describe_label(splitting, surface);
 	const uint64_t vertices = number_vertices(splitting, label, local);
-	splitting->results[label] =
-		gz_mesh_allocate(vertices, 2 * (uint64_t)(end - first), &surface->mesh);
+	const uint64_t triangles = triangles_of(splitting, label);
+	splitting->results[label] = triangles <= splitting->elements_max
+					    ? gz_mesh_allocate(vertices, triangles, &surface->mesh)
+					    : GZ_ERR_FULL;
 	if (splitting->results[label] == GZ_OK) {
 		write_label_faces(splitting, label, local, &surface->mesh);
 		make_label_normals(&surface->mesh);
@@ -275,7 +283,25 @@ static bool allocate_splitting(struct splitting *splitting, size_t threads)
 	       splitting->surfaces->items;
 }
 
-static enum gz_result split_net(struct splitting *splitting, struct gz_workers *workers)
+/* The first failure of a label; one that has too many triangles is told. */
+static enum gz_result check_labels(const struct splitting *splitting, const struct gz_log *log)
+{
+	size_t i = 0;
+	while (i < splitting->index->count && splitting->results[i] == GZ_OK)
+		i++;
+	if (i == splitting->index->count)
+		return GZ_OK;
+	if (splitting->results[i] == GZ_ERR_FULL)
+		gz_err(log,
+		       "the surface of label %" PRId32 " has %" PRIu64
+		       " triangles, more than %" PRIu64 "; use a smaller volume",
+		       splitting->index->numbers[i], triangles_of(splitting, i),
+		       splitting->elements_max);
+	return splitting->results[i];
+}
+
+static enum gz_result split_net(struct splitting *splitting, struct gz_workers *workers,
+				const struct gz_log *log)
 {
 	const size_t threads = workers ? (size_t)gz_workers_count(workers) : 1;
 	const size_t labels = splitting->index->count;
@@ -287,8 +313,8 @@ static enum gz_result split_net(struct splitting *splitting, struct gz_workers *
 		gz_label_run(workers, sort_chunk, splitting, CHUNKS);
 		gz_label_run(workers, split_label, splitting, labels);
 	}
-	for (size_t i = 0; i < labels && result == GZ_OK; i++)
-		result = splitting->results[i];
+	if (result == GZ_OK)
+		result = check_labels(splitting, log);
 	free(splitting->offsets);
 	free(splitting->first);
 	free(splitting->results);
@@ -302,16 +328,18 @@ static enum gz_result make_surfaces(const struct gz_label_request *request,
 				    const struct gz_log *log, struct gz_label_surfaces *surfaces)
 {
 	struct gz_label_net net = { 0 };
-	enum gz_result result = gz_label_net_make(index, workers, log, &net);
+	const uint64_t most = gz_mesh_count_limit(request->elements_max);
+	enum gz_result result = gz_label_net_make(index, most, workers, log, &net);
 	if (result == GZ_OK)
 		result = gz_label_net_smooth(&net, index->dims, request->smoothing, workers);
 	if (result == GZ_OK) {
 		struct splitting splitting = { .index = index,
 					       .net = &net,
 					       .spacing = request->volume->spacing,
+					       .elements_max = most,
 					       .names = request->names,
 					       .surfaces = surfaces };
-		result = split_net(&splitting, workers);
+		result = split_net(&splitting, workers, log);
 	}
 	gz_label_net_free(&net);
 	return result;

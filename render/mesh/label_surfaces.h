@@ -75,6 +75,9 @@ struct gz_label_request {
 	const char *name;                   /**< the volume's in messages */
 	int smoothing;                      /**< as in struct gz_label_look */
 	const struct gz_label_names *names; /**< NULL: none */
+	/** Most vertices and faces of all labels, and most triangles of one; 0 or more than
+	 *  GZ_MESH_COUNT_MAX: that many. */
+	uint64_t elements_max;
 };
 
 /**
@@ -82,7 +85,7 @@ struct gz_label_request {
  *
  * @param workers  share the work; NULL for the calling thread alone
  * @param[out] out_surfaces  written on GZ_OK; the caller frees it with gz_label_surfaces_free()
- * @retval GZ_ERR_FULL    more than GZ_MESH_COUNT_MAX vertices, or triangles of a label; logged
+ * @retval GZ_ERR_FULL    more than elements_max of them; logged
  * @retval GZ_ERR_NO_MEM  logged
  * @return otherwise the failures of gz_label_index_make(); logged
  *

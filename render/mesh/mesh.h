@@ -14,6 +14,12 @@
  *  of them with a sign. */
 #define GZ_MESH_COUNT_MAX INT32_MAX
 
+/** The limit of a request: @p asked, or GZ_MESH_COUNT_MAX if that is 0 or more. */
+static inline uint64_t gz_mesh_count_limit(uint64_t asked)
+{
+	return asked > 0 && asked < GZ_MESH_COUNT_MAX ? asked : GZ_MESH_COUNT_MAX;
+}
+
 /** Readable bytes after the last element of each array, for loads of 16 bytes. */
 #define GZ_MESH_PADDING 16
 

@@ -486,6 +486,33 @@ static void isovalue_outside_the_data_gives_an_empty_mesh_and_a_sentence(void **
 	gz_volume_free(&volume);
 }
 
+static void surface_of_more_elements_than_the_limit_is_refused_with_a_sentence(void **state)
+{
+	(void)state;
+	static const int dims[3] = { 40, 40, 40 };
+	struct gz_volume volume = field_volume(field_ball, dims, EVEN, GZ_VOXEL_U8);
+	struct gz_isosurface_request request = { .volume = &volume };
+	struct captured_log log;
+	struct gz_mesh whole, mesh = { .vertex_count = 99 };
+	char says[80];
+	captured_log_init(&log, "*:info");
+	assert_int_equal(gz_isosurface_make(&request, NULL, &log.log, &whole), GZ_OK);
+	request.elements_max = whole.triangle_count; /* there are fewer vertices */
+	assert_int_equal(gz_isosurface_make(&request, NULL, &log.log, &mesh), GZ_OK);
+	assert_int_equal(log.messages, 0);
+	gz_mesh_free(&mesh);
+	mesh.vertex_count = 99;
+	request.elements_max--;
+	assert_int_equal(gz_isosurface_make(&request, NULL, &log.log, &mesh), GZ_ERR_FULL);
+	assert_int_equal(log.messages, 1);
+	snprintf(says, sizeof says, "%zu triangles, more than %zu; choose another isovalue",
+		 whole.triangle_count, whole.triangle_count - 1);
+	assert_non_null(strstr(log.last, says));
+	assert_int_equal(mesh.vertex_count, 99);
+	gz_mesh_free(&whole);
+	gz_volume_free(&volume);
+}
+
 static void volume_of_one_slice_gives_an_empty_mesh_and_a_sentence(void **state)
 {
 	(void)state;
@@ -544,6 +571,8 @@ TEST_SUITE(isosurface)
 		cmocka_unit_test(mesh_is_the_same_for_any_number_of_threads),
 		cmocka_unit_test(macrocells_change_nothing_but_what_is_read),
 		cmocka_unit_test(isovalue_outside_the_data_gives_an_empty_mesh_and_a_sentence),
+		cmocka_unit_test(
+			surface_of_more_elements_than_the_limit_is_refused_with_a_sentence),
 		cmocka_unit_test(volume_of_one_slice_gives_an_empty_mesh_and_a_sentence),
 		cmocka_unit_test(what_has_no_surface_is_refused),
 	};

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/captured_log.h"
 #include "base/workers.h"
 #include "render/mesh/label_surfaces.h"
 #include "render/mesh/mesh_measure.h"
@@ -40,7 +41,9 @@ static struct gz_label_surfaces make_surfaces_of(const struct gz_volume *volume,
 {
 	struct gz_label_surfaces surfaces;
 	struct gz_workers *workers = NULL;
-	const struct gz_label_request request = { volume, "labels", smoothing, NULL };
+	const struct gz_label_request request = { .volume = volume,
+						  .name = "labels",
+						  .smoothing = smoothing };
 	if (threads > 0)
 		assert_int_equal(gz_workers_create(threads, &workers), GZ_OK);
 	assert_int_equal(gz_label_surfaces_make(&request, workers, NULL, &surfaces), GZ_OK);
@@ -345,14 +348,67 @@ static double one_voxel(int x, int y, int z)
 	return x == 0 && y == 11 && z == 5;
 }
 
+/* What the last try_labels() has said. */
+static struct captured_log said;
+
+static enum gz_result try_labels_up_to(uint64_t elements_max, enum gz_voxel_type type,
+				       label_formula *formula, struct gz_label_surfaces *out)
+{
+	struct gz_volume volume = make_labels(12, type, formula);
+	const struct gz_label_request request = {
+		.volume = &volume, .name = "labels", .smoothing = 10, .elements_max = elements_max
+	};
+	captured_log_init(&said, "*:info");
+	const enum gz_result result = gz_label_surfaces_make(&request, NULL, &said.log, out);
+	gz_volume_free(&volume);
+	return result;
+}
+
 static enum gz_result try_labels(enum gz_voxel_type type, label_formula *formula,
 				 struct gz_label_surfaces *out)
 {
-	struct gz_volume volume = make_labels(12, type, formula);
-	const struct gz_label_request request = { &volume, "labels", 10, NULL };
-	const enum gz_result result = gz_label_surfaces_make(&request, NULL, NULL, out);
-	gz_volume_free(&volume);
-	return result;
+	return try_labels_up_to(0, type, formula, out);
+}
+
+/* 960 labels, and 961. */
+static double most_labels(int x, int y, int z)
+{
+	return fmin(thousands(x, y, z), 960);
+}
+
+static double one_label_more(int x, int y, int z)
+{
+	return fmin(thousands(x, y, z), 961);
+}
+
+static void as_many_labels_as_allowed_are_shown_and_one_more_is_refused(void **state)
+{
+	(void)state;
+	struct gz_label_surfaces surfaces = { 0 };
+	assert_int_equal(try_labels(GZ_VOXEL_U16, most_labels, &surfaces), GZ_OK);
+	assert_int_equal(surfaces.count, 960);
+	assert_int_equal(surfaces.items[0].voxels, 1);
+	assert_int_equal(surfaces.items[959].voxels, 1728 - 960);
+	gz_label_surfaces_free(&surfaces);
+	assert_int_equal(try_labels(GZ_VOXEL_U16, one_label_more, &surfaces), GZ_ERR_FULL);
+	assert_int_equal(said.messages, 1);
+	assert_non_null(strstr(said.last, "960"));
+}
+
+/* A voxel has 8 vertices, 6 faces and 12 triangles. */
+static void surfaces_of_more_elements_than_the_limit_are_refused_with_a_sentence(void **state)
+{
+	(void)state;
+	struct gz_label_surfaces surfaces = { 0 };
+	assert_int_equal(try_labels_up_to(12, GZ_VOXEL_U8, one_voxel, &surfaces), GZ_OK);
+	gz_label_surfaces_free(&surfaces);
+	assert_int_equal(try_labels_up_to(11, GZ_VOXEL_U8, one_voxel, &surfaces), GZ_ERR_FULL);
+	assert_int_equal(said.messages, 1);
+	assert_non_null(strstr(said.last, "label 1 has 12 triangles, more than 11"));
+	assert_int_equal(try_labels_up_to(7, GZ_VOXEL_U8, one_voxel, &surfaces), GZ_ERR_FULL);
+	assert_int_equal(said.messages, 1);
+	assert_non_null(strstr(said.last, "8 vertices and 6 faces, more than 7"));
+	assert_null(surfaces.items);
 }
 
 static void volumes_that_hold_no_labels_or_too_many_are_refused(void **state)
@@ -412,6 +468,9 @@ TEST_SUITE(label_surfaces)
 		cmocka_unit_test(noise_has_no_open_edge),
 		cmocka_unit_test(meshes_are_the_same_for_any_number_of_threads_and_type),
 		cmocka_unit_test(volumes_that_hold_no_labels_or_too_many_are_refused),
+		cmocka_unit_test(as_many_labels_as_allowed_are_shown_and_one_more_is_refused),
+		cmocka_unit_test(
+			surfaces_of_more_elements_than_the_limit_are_refused_with_a_sentence),
 		cmocka_unit_test(single_voxel_at_the_side_stays),
 		cmocka_unit_test(colours_of_near_labels_differ),
 	};

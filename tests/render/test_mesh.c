@@ -122,6 +122,9 @@ static void mesh_of_more_elements_than_can_be_numbered_is_refused(void **state)
 	assert_int_equal(gz_mesh_allocate(1, many, &mesh), GZ_ERR_FULL);
 	assert_int_equal(gz_mesh_allocate(UINT64_MAX, UINT64_MAX, &mesh), GZ_ERR_FULL);
 	assert_int_equal(mesh.vertex_count, 99);
+	assert_true(gz_mesh_count_limit(0) == GZ_MESH_COUNT_MAX);
+	assert_true(gz_mesh_count_limit(UINT64_MAX) == GZ_MESH_COUNT_MAX);
+	assert_true(gz_mesh_count_limit(1000) == 1000);
 }
 
 static void empty_mesh_has_no_measures_and_can_be_freed(void **state)

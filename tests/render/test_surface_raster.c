@@ -519,6 +519,30 @@ static void meshes_beyond_the_devices_memory_are_refused_with_one_line(void **st
 	gz_volume_free(&volume);
 }
 
+/* Counts alone are looked at: such a mesh has 8 GiB. */
+static void meshes_of_more_elements_than_corners_can_be_counted_are_refused(void **state)
+{
+	(void)state;
+	struct gz_volume volume = field_volume(field_ball, DIMS, EVEN, GZ_VOXEL_F32);
+	for (int which = 0; which < 2; which++) {
+		struct gz_mesh huge = { .vertex_count = 3, .triangle_count = 1 };
+		*(which ? &huge.triangle_count : &huge.vertex_count) = GZ_SURFACE_ELEMENTS_MAX + 1;
+		const struct gz_object object = { .id = 7, .volume = &volume, .mesh = &huge };
+		struct captured_log captured;
+		bool new_meshes = true;
+		captured_log_init(&captured, "*:warn");
+		struct gz_surface_meshes meshes = { .log = &captured.log };
+		assert_int_equal(gz_surface_meshes_show(&meshes, &object, 1), GZ_OK);
+		assert_int_equal(gz_surface_meshes_make(&meshes, 0, NULL, &new_meshes),
+				 GZ_ERR_FULL);
+		assert_false(new_meshes);
+		assert_int_equal(captured.messages, 1);
+		assert_non_null(strstr(captured.last, "at most 715827882 vertices and triangles"));
+		gz_surface_meshes_free(&meshes);
+	}
+	gz_volume_free(&volume);
+}
+
 /* As in a window: the picture stays on the device, and what the window draws next is not upset. */
 static void picture_left_in_a_lent_context_equals_the_one_read_back(void **state)
 {
@@ -684,6 +708,7 @@ TEST_SUITE(surface_raster)
 		cmocka_unit_test(nothing_in_view_leaves_the_background),
 		cmocka_unit_test(meshes_are_uploaded_when_they_change_and_no_more),
 		cmocka_unit_test(meshes_beyond_the_devices_memory_are_refused_with_one_line),
+		cmocka_unit_test(meshes_of_more_elements_than_corners_can_be_counted_are_refused),
 		cmocka_unit_test(picture_left_in_a_lent_context_equals_the_one_read_back),
 		cmocka_unit_test(drawer_of_gl_casts_the_hits_of_the_one_of_cpu),
 		cmocka_unit_test(points_on_rays_are_drawn_at_their_pixels),

@@ -319,6 +319,7 @@ static void draw_raster_frame(const struct rastering *rastering)
 	gz_gl_timer_mark(&raster->timer, &raster->device, MARK_END);
 }
 
+/* Copy a plane from the device, if it is wanted. */
 static enum gz_result deliver_plane(struct gz_surface_raster *raster,
 				    enum gz_gl_target_plane source, struct gz_plane *plane)
 {
@@ -326,7 +327,17 @@ static enum gz_result deliver_plane(struct gz_surface_raster *raster,
 	if (!plane)
 		return GZ_OK;
 	list_textures(raster, source, textures);
-	return gz_gl_layers_pick(&raster->layers, &raster->device, textures, plane->words);
+	const enum gz_result result =
+		gz_gl_layers_pick(&raster->layers, &raster->device, textures, plane->words);
+	if (result != GZ_OK)
+		gz_err(raster->log,
+		       "%s drew a picture, but its %s cannot be copied from the graphics device: "
+		       "%s; %s",
+		       raster->device.description,
+		       source == GZ_GL_TARGET_ID ? "numbers of objects" : "depths",
+		       result == GZ_ERR_NO_DEVICE ? "the context is lost" : gz_result_text(result),
+		       remedy);
+	return result;
 }
 
 /* Copy the planes that are wanted, after the picture. */
@@ -339,9 +350,6 @@ static enum gz_result deliver_planes(const struct rastering *rastering)
 		result = deliver_plane(raster, GZ_GL_TARGET_ID, planes->ids);
 	if (planes && result == GZ_OK)
 		result = deliver_plane(raster, GZ_GL_TARGET_VALUE, planes->depth);
-	if (result != GZ_OK)
-		gz_err(raster->log, "%s gave no plane: %s", raster->device.description,
-		       gz_result_text(result));
 	return result;
 }
 
