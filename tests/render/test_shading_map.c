@@ -9,6 +9,7 @@
 #include "mesh_fields.h"
 #include "render/illustration/depth_blur.h"
 #include "render/illustration/feature_lines.h"
+#include "render/illustration/plane_kernels.h"
 #include "render/illustration/shading_map.h"
 #include "render/illustration/tone_curve.h"
 
@@ -236,6 +237,38 @@ static void steps_within_an_object_are_inner_lines(void **state)
 		    "...-...");
 }
 
+/* The loops of this processor's instruction set and the portable ones, on random planes with
+ * patches of one object and rows that end within a register. */
+static void instruction_sets_give_the_same_bits(void **state)
+{
+	(void)state;
+	enum { WIDE = 203, HIGH = 31 };
+	static uint32_t ids[HIGH * WIDE];
+	static float depth[HIGH * WIDE], found[HIGH * WIDE], portable[HIGH * WIDE];
+	const struct gz_line_planes planes = { ids, depth };
+	const struct gz_plane_band all = { WIDE, HIGH, 0, HIGH };
+	const struct gz_plane_kernels *best = gz_plane_kernels_find();
+	const struct gz_plane_kernels *plain = &gz_plane_kernels_portable;
+	struct gz_gaussian gaussian;
+	uint32_t seed = 21;
+	for (size_t i = 0; i < HIGH * WIDE; i++) {
+		depth[i] = (float)field_random(&seed);
+		ids[i] = i % WIDE < 90 ? i / WIDE > 15 : (uint32_t)(4 * field_random(&seed));
+	}
+	for (enum gz_line_filter filter = GZ_LINES_4; filter < GZ_LINE_FILTER_COUNT; filter++) {
+		best->find_lines(&planes, &all, filter, 0.1F, found);
+		plain->find_lines(&planes, &all, filter, 0.1F, portable);
+		assert_memory_equal(found, portable, sizeof found);
+	}
+	gz_gaussian_make(3, &gaussian);
+	best->blur_rows(&gaussian, &all, depth, found);
+	plain->blur_rows(&gaussian, &all, depth, portable);
+	assert_memory_equal(found, portable, sizeof found);
+	best->blur_columns(&gaussian, &all, depth, found);
+	plain->blur_columns(&gaussian, &all, depth, portable);
+	assert_memory_equal(found, portable, sizeof found);
+}
+
 /* ---- the equations ---- */
 
 static void fading_moves_towards_white(void **state)
@@ -355,6 +388,7 @@ TEST_SUITE(shading_map)
 		cmocka_unit_test(silhouettes_lie_on_the_nearer_object),
 		cmocka_unit_test(order_of_ids_does_not_matter),
 		cmocka_unit_test(steps_within_an_object_are_inner_lines),
+		cmocka_unit_test(instruction_sets_give_the_same_bits),
 		cmocka_unit_test(fading_moves_towards_white),
 		cmocka_unit_test(edge_light_and_shadow_are_both_parts_of_one_mask),
 		cmocka_unit_test(haze_moves_towards_its_background),
