@@ -8,19 +8,23 @@
 #include <stdatomic.h>
 #include <string.h>
 #include <sys/syscall.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 
-/* Ports at which connections come through the door. */
-enum { PORTS_MAX = 4 };
+/* Ports and local sockets at which connections come through doors. */
+enum { OPENINGS_MAX = 8 };
+
+_Static_assert(OPENINGS_MAX < GZ_DOOR_CHANNELS, "each opening is a channel");
 
 /* libzmq calls without a context of ours, so these are the doors of the program. */
 static pthread_mutex_t door_mutex = PTHREAD_MUTEX_INITIALIZER;
 static struct opening {
 	struct gz_door *door;
-	uint16_t port;
-} openings[PORTS_MAX];
+	uint16_t port; /* 0: a local socket */
+	char path[sizeof((struct sockaddr_un *)0)->sun_path];
+} openings[OPENINGS_MAX];
 static _Atomic int opening_count;
 
 /* At which opening the connections are, from 1 on; 0: none. No part of a door, which may end while
@@ -40,46 +44,81 @@ static int noted_opening(int fd)
 		       : 0;
 }
 
-bool gz_accept_was_asked(int fd)
+int gz_accept_channel(int fd)
 {
-	return noted_opening(fd) > 0;
+	return noted_opening(fd);
 }
 
-void gz_accept_through(struct gz_door *door, uint16_t port)
+static int add_opening(const struct opening *opening)
 {
+	int number = 0;
 	pthread_mutex_lock(&door_mutex);
 	int count = atomic_load(&opening_count);
-	if (!door)
-		atomic_store(&opening_count, 0);
-	if (door && count < PORTS_MAX) {
-		openings[count] = (struct opening) { .door = door, .port = port };
-		atomic_store(&opening_count, count + 1);
+	if (count < OPENINGS_MAX) {
+		openings[count] = *opening;
+		number = count + 1;
+		atomic_store(&opening_count, number);
 	}
+	pthread_mutex_unlock(&door_mutex);
+	return number;
+}
+
+int gz_accept_through(struct gz_door *door, uint16_t port)
+{
+	const struct opening opening = { .door = door, .port = port };
+	return add_opening(&opening);
+}
+
+int gz_accept_through_path(struct gz_door *door, const char *path)
+{
+	struct opening opening = { .door = door };
+	if (strlen(path) >= sizeof opening.path)
+		return 0;
+	memcpy(opening.path, path, strlen(path) + 1);
+	return add_opening(&opening);
+}
+
+void gz_accept_freely(void)
+{
+	pthread_mutex_lock(&door_mutex);
+	atomic_store(&opening_count, 0);
 	pthread_mutex_unlock(&door_mutex);
 }
 
-static uint16_t local_tcp_port(int fd)
+/* An address of this machine. */
+union local_address {
+	struct sockaddr any;
+	struct sockaddr_in v4;
+	struct sockaddr_in6 v6;
+	struct sockaddr_un local;
+	struct sockaddr_storage room;
+};
+
+static bool is_address_of(const struct opening *opening, const union local_address *address)
 {
-	union {
-		struct sockaddr any;
-		struct sockaddr_in v4;
-		struct sockaddr_in6 v6;
-		struct sockaddr_storage room;
-	} address = { 0 };
-	socklen_t size = sizeof address;
-	if (getsockname(fd, &address.any, &size) != 0)
-		return 0;
-	if (address.any.sa_family == AF_INET)
-		return ntohs(address.v4.sin_port);
-	return address.any.sa_family == AF_INET6 ? ntohs(address.v6.sin6_port) : 0;
+	switch (address->any.sa_family) {
+	case AF_INET:
+		return opening->port > 0 && opening->port == ntohs(address->v4.sin_port);
+	case AF_INET6:
+		return opening->port > 0 && opening->port == ntohs(address->v6.sin6_port);
+	case AF_UNIX:
+		return opening->port == 0 &&
+		       strncmp(opening->path, address->local.sun_path, sizeof opening->path) == 0;
+	default:
+		return false;
+	}
 }
 
-/* @return the number of the opening, from 1 on; 0: none */
-static int find_opening(uint16_t port)
+/* @return the number of the opening at which the connection has come, from 1 on; 0: none */
+static int find_opening(int fd)
 {
+	union local_address address = { .room = { .ss_family = AF_UNSPEC } };
+	socklen_t size = sizeof address;
 	int count = atomic_load(&opening_count);
+	if (getsockname(fd, &address.any, &size) != 0)
+		return 0;
 	for (int i = 0; i < count; i++) {
-		if (openings[i].port == port)
+		if (is_address_of(&openings[i], &address))
 			return i + 1;
 	}
 	return 0;
@@ -89,19 +128,27 @@ static int find_opening(uint16_t port)
 static bool ask_to_enter(int fd)
 {
 	bool welcome = true;
-	uint16_t port = local_tcp_port(fd);
 	int64_t now_ns = gz_clock_now_ns();
 	pthread_mutex_lock(&door_mutex);
-	int number = find_opening(port);
+	int number = find_opening(fd);
 	note_opening(fd, number);
 	/* The number may be that of a connection that ended unnoticed. */
 	for (int i = 0; i < atomic_load(&opening_count); i++)
 		gz_door_leave(openings[i].door, fd, now_ns);
 	if (number > 0)
 		welcome = gz_door_enter(openings[number - 1].door, fd, gz_connection_identity(fd),
-					now_ns);
+					number, now_ns);
 	pthread_mutex_unlock(&door_mutex);
 	return welcome;
+}
+
+void gz_accept_ended(int fd)
+{
+	int64_t now_ns = gz_clock_now_ns();
+	pthread_mutex_lock(&door_mutex);
+	for (int i = 0; i < atomic_load(&opening_count); i++)
+		gz_door_look(openings[i].door, fd, now_ns);
+	pthread_mutex_unlock(&door_mutex);
 }
 
 /* Close at once and leave nothing in the kernel. */
@@ -157,7 +204,7 @@ static ssize_t ask_to_pass(int fd, const void *bytes, ssize_t received)
 ssize_t gz_recv(int fd, void *bytes, size_t size, int flags)
 {
 	ssize_t received = syscall(SYS_recvfrom, fd, bytes, size, flags, NULL, NULL);
-	if (size == 0 || flags & MSG_PEEK || !gz_accept_was_asked(fd))
+	if (size == 0 || flags & MSG_PEEK || gz_accept_channel(fd) == 0)
 		return received;
 	return ask_to_pass(fd, bytes, received);
 }

@@ -34,17 +34,27 @@ ssize_t gz_recv(int fd, void *bytes, size_t size, int flags) __asm__("recv");
 bool gz_accept_is_found(void);
 
 /**
- * Ask a door about connections at a port from now on.
+ * Ask a door about connections at a port, or at a local socket, from now on. Up to eight of them
+ * are kept.
  *
- * @param door  borrowed until the call with NULL, after which no door is asked
- * @param port  local TCP port at which connections come through it, in the host's byte order; up to
- *              four ports are kept, further ones ignored
+ * @param door  borrowed until gz_accept_freely()
+ * @param port  local TCP port at which connections come through it, in the host's byte order
+ * @param path  the same for a local socket: its file, as it is bound; copied
+ * @return the door's channel (door.h) for these connections, 1 to 8; 0 if there are too many, or
+ * the path is too long for a socket: then the door is not asked
  *
  * Threads: any.
  */
-void gz_accept_through(struct gz_door *door, uint16_t port);
+int gz_accept_through(struct gz_door *door, uint16_t port);
+int gz_accept_through_path(struct gz_door *door, const char *path);
 
-/** Whether connection @p fd came through a door. Threads: any. */
-bool gz_accept_was_asked(int fd);
+/** Ask no door any more. Threads: any. */
+void gz_accept_freely(void);
+
+/** The channel at which connection @p fd came through a door; 0: none. Threads: any. */
+int gz_accept_channel(int fd);
+
+/** libzmq has closed a connection that had the number @p fd. Threads: any. */
+void gz_accept_ended(int fd);
 
 #endif

@@ -1,7 +1,7 @@
 /**
  * @file
- * The doors through which clients without keys come, one for readers, one for each socket that
- * takes messages: what they send is counted before libzmq takes it.
+ * The doors through which clients come: for each place (local sockets; TCP) one for readers, and
+ * one for each socket that takes messages. What clients send is counted before libzmq takes it.
  *
  * Readers: libzmq 4.3.4 keeps all subscriptions of a socket in one tree with a node for each byte.
  * When a connection ends, it walks the whole tree in the thread of the stream: connections times
@@ -13,6 +13,10 @@
  * Senders: libzmq keeps messages until the daemon takes them, and limits their number and the size
  * of a frame for each connection, not bytes, frames of a message, or connections. The door limits
  * these: what libzmq holds is what has passed less what the daemon has taken.
+ *
+ * Clients with keys: what they send is encrypted, so the door sees the size of each message, not
+ * what it is. Whatever is longer than a heartbeat counts as a strange topic. A client that has not
+ * proved its key takes nothing of what clients share; libzmq ends it when its handshake fails.
  *
  * The limits hold without a race, because accept.h asks in the middle of libzmq's own calls.
  */
@@ -32,12 +36,47 @@ enum gz_door_kind {
 	GZ_DOOR_SENDERS, /**< they send messages: of the inlet, or requests */
 };
 
-/** Most connections of a door. If a further one comes, an old one is ended: one that has not
- * subscribed to anything the daemon sends, or as a sender not finished the handshake, for
- * GZ_DOOR_HANDSHAKE_MS, else one that does not read what it is sent, else one that came later than
- * GZ_DOOR_NEW_MS before the house became full; the oldest of each first. If there is none of these,
- * the new one is refused. Chosen: a laboratory has some tens, and the stream at 1000 Hz can serve
- * these. */
+/** From where clients come. */
+enum gz_door_place {
+	GZ_DOOR_OPEN,  /**< over TCP without keys */
+	GZ_DOOR_LOCAL, /**< local sockets */
+	GZ_DOOR_KEYS,  /**< over TCP with keys */
+	GZ_DOOR_PLACES,
+};
+
+/** Limits that depend on the place. */
+struct gz_door_limits {
+	uint32_t connections;  /**< of a door, as GZ_DOOR_CONNECTIONS */
+	uint32_t strange;      /**< as GZ_DOOR_STRANGE */
+	uint32_t strange_each; /**< as GZ_DOOR_STRANGE_EACH */
+	uint32_t reader_cost;  /**< as GZ_DOOR_READER_COST */
+};
+
+/** The limits of a place. */
+const struct gz_door_limits *gz_door_limits_of(enum gz_door_place place);
+
+/** The same numbers for clients of the daemon's user or group and for clients with keys. Chosen:
+ * four times as many connections, and what readers.h allows one reader; walks take up to 2 ms then.
+ */
+#define GZ_DOOR_TRUSTED_CONNECTIONS  1024
+#define GZ_DOOR_TRUSTED_STRANGE      16384
+#define GZ_DOOR_TRUSTED_STRANGE_EACH 4096
+#define GZ_DOOR_TRUSTED_READER_COST  4096
+
+/** What CURVE adds to a message (RFC 26): the command's name, a nonce, a code and the flags. */
+#define GZ_DOOR_SEAL_SIZE (8 + 8 + 16 + 1)
+
+/** Longest heartbeat, bytes without the seal (RFC 37: "PING" with its time to live and a context of
+ * ours, which is empty). */
+#define GZ_DOOR_HEARTBEAT_SIZE 16
+
+/** Most connections of a door over TCP without keys. If a further one comes, an old one is ended:
+ * one that has not subscribed to anything the daemon sends, or as a sender not finished the
+ * handshake, for GZ_DOOR_HANDSHAKE_MS, else one that does not read what it is sent, the oldest of
+ * each first; else the sender that has sent nothing for the longest time, at least GZ_DOOR_IDLE_MS;
+ * else the oldest that came later than GZ_DOOR_NEW_MS before the house became full and has proved
+ * no key. If there is none of these, the new one is refused. Chosen: a laboratory has some tens,
+ * and the stream at 1000 Hz can serve these. */
 #define GZ_DOOR_CONNECTIONS 256
 
 /** How long a client may take to do so, ms, if others want its place. Chosen: a hundred times
@@ -47,6 +86,10 @@ enum gz_door_kind {
 /** How long before that a reader must have come to keep its place, ms. Those that come in a flood
  * replace each other, so that they do not keep others out. Chosen. */
 #define GZ_DOOR_NEW_MS 1000
+
+/** How long a sender must have sent nothing to lose its place, ms. libzmq's clients connect again
+ * when they have something to send. Chosen. */
+#define GZ_DOOR_IDLE_MS 5000
 
 /** How long nobody must have come to a full house for it to count as not full, ms. Chosen. */
 #define GZ_DOOR_CALM_MS 5000
@@ -99,10 +142,13 @@ enum gz_door_kind {
 /** Most bytes of one message, counted like that. Chosen: the largest request with its envelope. */
 #define GZ_DOOR_MESSAGE_MAX (80 * 1024)
 
+/** Channels of a door: sockets at which its clients come. Each has a number below this. */
+#define GZ_DOOR_CHANNELS 16
+
 /** Most topics that gz_door_know() keeps. */
 #define GZ_DOOR_TOPICS_MAX 64
 
-/** A door. One thread at a time, except for gz_door_took(), gz_door_emptied() and
+/** A door. One thread at a time, except for gz_door_took(), gz_door_emptied(), gz_door_quiet() and
  * gz_door_refused(). */
 struct gz_door;
 
@@ -112,7 +158,8 @@ struct gz_door;
  * @param[out] out_door  owned by the caller: gz_door_destroy()
  * @retval GZ_ERR_NO_MEM  no memory
  */
-enum gz_result gz_door_create(enum gz_door_kind kind, struct gz_door **out_door);
+enum gz_result gz_door_create(enum gz_door_kind kind, enum gz_door_place place,
+			      struct gz_door **out_door);
 
 /** Know a further topic that the daemon sends. Beyond GZ_DOOR_TOPICS_MAX it stays strange. */
 void gz_door_know(struct gz_door *door, const char *topic);
@@ -122,10 +169,11 @@ void gz_door_know(struct gz_door *door, const char *topic);
  *
  * @param fd        its descriptor
  * @param identity  gz_connection_identity() of it
+ * @param channel   at which it came
  * @param now_ns    host time
  * @return whether it may stay; if not, the caller closes it
  */
-bool gz_door_enter(struct gz_door *door, int fd, uint64_t identity, int64_t now_ns);
+bool gz_door_enter(struct gz_door *door, int fd, uint64_t identity, int channel, int64_t now_ns);
 
 /**
  * A connection has sent something, which libzmq has not taken yet.
@@ -141,6 +189,13 @@ bool gz_door_pass(struct gz_door *door, int fd, uint64_t identity, const void *b
 /** A connection has ended. Ignored if it did not come through the door. Those that end unnoticed
  * are found when there are too many. */
 void gz_door_leave(struct gz_door *door, int fd, int64_t now_ns);
+
+/** A connection may have ended: forget it, unless @p fd is still what came through the door. */
+void gz_door_look(struct gz_door *door, int fd, int64_t now_ns);
+
+/** How many present connections of a channel want no message: they have subscribed to nothing, or
+ * to what they read at the board (board.h). Threads: any. */
+uint32_t gz_door_quiet(const struct gz_door *door, int channel);
 
 /** The daemon has taken a frame of @p size bytes, which a sender has sent, from libzmq. Threads:
  * any. */

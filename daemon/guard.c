@@ -49,17 +49,32 @@ struct peer {
 	char address[GZ_ADDRESS_SIZE];
 };
 
+/* The ways by which clients come. */
+enum way { BY_TCP, LOCALLY, WAYS };
+
 struct gz_connections {
 	struct gz_guard *guard;
 	const char *name;
 	void *monitor;   /* PAIR */
 	bool of_readers; /* its clients may only subscribe */
-	struct gz_door *door;
+	/* Through which doors clients come over TCP and at the local socket, and the doors' numbers
+	 * for them; 0: no door is open. */
+	struct gz_door *doors[WAYS];
+	int channels[WAYS];
 	_Atomic uint32_t count;
 	bool failing; /* a handshake has failed; the next event ends its connection */
 	enum notice failure;
 	unsigned next_peer;           /* index of the oldest peer, which the next one replaces */
 	struct peer peers[PEERS_MAX]; /* the newest connections */
+};
+
+/* A door, and its refusals that are in the log. */
+struct guarded_door {
+	struct gz_door *door;
+	enum gz_door_kind kind;
+	enum gz_door_place place;
+	uint64_t told[GZ_QUOTA_REASON_COUNT];
+	struct gz_ratelimit complaints[GZ_QUOTA_REASON_COUNT];
 };
 
 struct gz_guard {
@@ -76,16 +91,24 @@ struct gz_guard {
 	struct gz_address_limit told;
 	uint32_t left;   /* connections that ended since memory was given back */
 	int64_t left_ns; /* the first of them */
-	struct gz_door *readers_door;
-	struct gz_door *senders_doors[GZ_GUARD_SOCKETS_MAX]; /* NULL: none */
-	/* Refusals that are in the log; those of senders are in the second row. */
-	uint64_t door_told[2][GZ_QUOTA_REASON_COUNT];
-	struct gz_ratelimit door_complaints[2][GZ_QUOTA_REASON_COUNT];
+	size_t door_count;
+	struct guarded_door
+		doors[WAYS * (1 + GZ_GUARD_SOCKETS_MAX)]; /* the first are the readers' */
 };
 
 uint32_t gz_connections_count(const struct gz_connections *connections)
 {
 	return atomic_load_explicit(&connections->count, memory_order_relaxed);
+}
+
+uint32_t gz_connections_listening(const struct gz_connections *connections)
+{
+	uint32_t count = gz_connections_count(connections), quiet = 0;
+	for (int way = 0; way < WAYS; way++) {
+		if (connections->channels[way] > 0)
+			quiet += gz_door_quiet(connections->doors[way], connections->channels[way]);
+	}
+	return count > quiet ? count - quiet : 0;
 }
 
 /* Whether @p notice about @p address may be logged now. Fills @p more with " (12 more times since
@@ -239,6 +262,7 @@ static void peer_left(struct gz_connections *connections, int fd)
 {
 	struct peer *peer = find_peer(connections, fd);
 	gz_quota_left(connections->guard->quota, fd, connections);
+	gz_accept_ended(fd);
 	if (connections->guard->left++ == 0)
 		connections->guard->left_ns = gz_clock_now_ns();
 	if (gz_connections_count(connections) > 0)
@@ -299,45 +323,50 @@ static void take_pending(struct gz_guard *guard)
 	}
 }
 
-static uint64_t senders_refused(const struct gz_guard *guard, enum gz_quota_reason reason)
+/* How many connections the doors of @p kind have refused or ended. */
+static uint64_t refused_at_doors(const struct gz_guard *guard, enum gz_door_kind kind,
+				 enum gz_quota_reason reason)
 {
 	uint64_t refused = 0;
-	for (size_t i = 0; i < GZ_GUARD_SOCKETS_MAX; i++) {
-		if (guard->senders_doors[i])
-			refused += gz_door_refused(guard->senders_doors[i], reason);
+	for (size_t i = 0; i < guard->door_count; i++) {
+		if (guard->doors[i].kind == kind)
+			refused += gz_door_refused(guard->doors[i].door, reason);
 	}
 	return refused;
 }
 
 /* A door cannot log by itself: it is asked by the thread that serves all connections. */
-static void log_refused_at_door(struct gz_guard *guard, bool of_senders,
+static void log_refused_at_door(struct gz_guard *guard, struct guarded_door *door,
 				enum gz_quota_reason reason)
 {
-	static const char *const texts[2][GZ_QUOTA_REASON_COUNT] = {
-		{ "readers over TCP are closed, because there are too many, or too many come at a "
-		  "time",
-		  "readers over TCP are closed, because they sent too many subscriptions" },
-		{ "clients over TCP are closed, because there are too many, or too many come at a "
-		  "time",
-		  "clients over TCP are closed, because they sent too much at once" },
+	static const char *const clients[] = {
+		[GZ_DOOR_READERS] = "readers", [GZ_DOOR_SENDERS] = "clients"
 	};
-	uint64_t held_back, *told = &guard->door_told[of_senders][reason];
-	uint64_t refused = of_senders ? senders_refused(guard, reason)
-				      : gz_door_refused(guard->readers_door, reason);
-	if (refused == *told ||
-	    !gz_ratelimit_pass(&guard->door_complaints[of_senders][reason], gz_clock_now_ns(),
-			       REFUSED_AT_DOOR_NS, &held_back))
+	static const char *const places[] = { [GZ_DOOR_OPEN] = "over TCP",
+					      [GZ_DOOR_LOCAL] = "at a local socket",
+					      [GZ_DOOR_KEYS] = "with keys" };
+	static const char *const texts[2][GZ_QUOTA_REASON_COUNT] = {
+		[GZ_DOOR_READERS] = { "there are too many, or too many come at a time",
+				      "they sent too many subscriptions" },
+		[GZ_DOOR_SENDERS] = { "there are too many, or too many come at a time",
+				      "they sent too much at once" },
+	};
+	uint64_t held_back, refused = gz_door_refused(door->door, reason);
+	if (refused == door->told[reason] ||
+	    !gz_ratelimit_pass(&door->complaints[reason], gz_clock_now_ns(), REFUSED_AT_DOOR_NS,
+			       &held_back))
 		return;
-	gz_warn(guard->log, "client bug: the connections of %llu %s",
-		(unsigned long long)(refused - *told), texts[of_senders][reason]);
-	*told = refused;
+	gz_warn(guard->log, "client bug: the connections of %llu %s %s are closed, because %s",
+		(unsigned long long)(refused - door->told[reason]), clients[door->kind],
+		places[door->place], texts[door->kind][reason]);
+	door->told[reason] = refused;
 }
 
 static void log_refused_at_doors(struct gz_guard *guard)
 {
-	for (int reason = 0; reason < GZ_QUOTA_REASON_COUNT; reason++) {
-		log_refused_at_door(guard, false, (enum gz_quota_reason)reason);
-		log_refused_at_door(guard, true, (enum gz_quota_reason)reason);
+	for (size_t i = 0; i < guard->door_count; i++) {
+		for (int reason = 0; reason < GZ_QUOTA_REASON_COUNT; reason++)
+			log_refused_at_door(guard, &guard->doors[i], (enum gz_quota_reason)reason);
 	}
 }
 
@@ -370,12 +399,14 @@ static void *guard_run(void *user)
 		if (zmq_poll(items, count, wait_ms) < 0 && errno != EINTR)
 			return NULL;
 		if (items[0].revents)
-			return NULL;
+			break;
 		gz_quota_check(guard->quota, gz_clock_now_ns());
 		take_pending(guard);
 		log_refused_at_doors(guard);
 		give_memory_back(guard);
 	}
+	log_refused_at_doors(guard);
+	return NULL;
 }
 
 static void set_guard_option(void *socket, int option, int value)
@@ -398,6 +429,24 @@ static enum gz_result open_zap(struct gz_guard *guard, const char *authorized_ke
 	return GZ_ERR_IO;
 }
 
+/* Make the doors of clients over TCP and at local sockets. */
+static enum gz_result make_doors(struct gz_guard *guard, enum gz_door_kind kind,
+				 struct gz_door *doors[WAYS])
+{
+	const enum gz_door_place places[WAYS] = {
+		[BY_TCP] = guard->zap ? GZ_DOOR_KEYS : GZ_DOOR_OPEN, [LOCALLY] = GZ_DOOR_LOCAL
+	};
+	for (int way = 0; way < WAYS; way++) {
+		enum gz_result result = gz_door_create(kind, places[way], &doors[way]);
+		if (result != GZ_OK)
+			return result;
+		guard->doors[guard->door_count++] = (struct guarded_door) { .door = doors[way],
+									    .kind = kind,
+									    .place = places[way] };
+	}
+	return GZ_OK;
+}
+
 enum gz_result gz_guard_create(void *context, const char *authorized_keys, const struct gz_log *log,
 			       struct gz_guard **out_guard)
 {
@@ -407,11 +456,12 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
 	guard->context = context;
 	guard->log = log;
 	guard->quit_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-	enum gz_result result = guard->quit_fd >= 0
-					? gz_door_create(GZ_DOOR_READERS, &guard->readers_door)
-					: GZ_ERR_NO_MEM;
+	enum gz_result result = guard->quit_fd >= 0 ? GZ_OK : GZ_ERR_NO_MEM;
+	struct gz_door *doors[WAYS];
 	if (result == GZ_OK && authorized_keys)
 		result = open_zap(guard, authorized_keys);
+	if (result == GZ_OK)
+		result = make_doors(guard, GZ_DOOR_READERS, doors);
 	if (result != GZ_OK) {
 		gz_guard_destroy(&guard);
 		return result;
@@ -430,21 +480,22 @@ static bool publishes(void *socket)
 
 /* The monitor reports connections; it must listen before the socket is bound. */
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
-			      const struct gz_connections **out_connections)
+			      struct gz_connections **out_connections)
 {
 	char endpoint[64];
 	if (guard->socket_count == GZ_GUARD_SOCKETS_MAX)
 		return GZ_ERR_FULL;
-	struct gz_connections *connections = &guard->sockets[guard->socket_count];
-	struct gz_door **senders_door = &guard->senders_doors[guard->socket_count++];
+	struct gz_connections *connections = &guard->sockets[guard->socket_count++];
 	connections->guard = guard;
 	connections->name = name;
 	connections->of_readers = publishes(socket);
-	enum gz_result result =
-		connections->of_readers ? GZ_OK : gz_door_create(GZ_DOOR_SENDERS, senders_door);
+	for (int way = 0; way < WAYS; way++)
+		connections->doors[way] = guard->doors[way].door; /* the readers' */
+	enum gz_result result = connections->of_readers
+					? GZ_OK
+					: make_doors(guard, GZ_DOOR_SENDERS, connections->doors);
 	if (result != GZ_OK)
 		return result;
-	connections->door = connections->of_readers ? guard->readers_door : *senders_door;
 	for (int i = 0; i < PEERS_MAX; i++)
 		connections->peers[i].fd = -1;
 	connections->monitor = zmq_socket(guard->context, ZMQ_PAIR);
@@ -491,30 +542,41 @@ uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reaso
 {
 	uint64_t ended = guard->quota ? gz_quota_ended(guard->quota, reason) : 0;
 	if (reason == GZ_QUOTA_TOO_MANY)
-		ended += senders_refused(guard, GZ_QUOTA_TOO_MANY) +
-			 senders_refused(guard, GZ_QUOTA_TOO_LARGE);
-	return ended + gz_door_refused(guard->readers_door, reason);
+		ended += refused_at_doors(guard, GZ_DOOR_SENDERS, GZ_QUOTA_TOO_MANY) +
+			 refused_at_doors(guard, GZ_DOOR_SENDERS, GZ_QUOTA_TOO_LARGE);
+	return ended + refused_at_doors(guard, GZ_DOOR_READERS, reason);
 }
 
-void gz_guard_open_door(const struct gz_connections *connections, int port)
+void gz_guard_open_door(struct gz_connections *connections, int port)
 {
-	gz_accept_through(connections->door, (uint16_t)port);
+	connections->channels[BY_TCP] =
+		gz_accept_through(connections->doors[BY_TCP], (uint16_t)port);
+}
+
+void gz_guard_open_local_door(struct gz_connections *connections, const char *path)
+{
+	connections->channels[LOCALLY] = gz_accept_through_path(connections->doors[LOCALLY], path);
 }
 
 void gz_connections_took(const struct gz_connections *connections, zmq_msg_t *frame)
 {
-	if (gz_accept_was_asked(zmq_msg_get(frame, ZMQ_SRCFD)))
-		gz_door_took(connections->door, zmq_msg_size(frame));
+	int channel = gz_accept_channel(zmq_msg_get(frame, ZMQ_SRCFD));
+	for (int way = 0; way < WAYS; way++) {
+		if (channel > 0 && channel == connections->channels[way])
+			gz_door_took(connections->doors[way], zmq_msg_size(frame));
+	}
 }
 
 void gz_connections_emptied(const struct gz_connections *connections)
 {
-	gz_door_emptied(connections->door);
+	for (int way = 0; way < WAYS; way++)
+		gz_door_emptied(connections->doors[way]);
 }
 
 void gz_guard_know_topic(struct gz_guard *guard, const char *topic)
 {
-	gz_door_know(guard->readers_door, topic);
+	for (int way = 0; way < WAYS; way++)
+		gz_door_know(guard->doors[way].door, topic);
 }
 
 void gz_guard_destroy(struct gz_guard **guard)
@@ -534,10 +596,9 @@ void gz_guard_destroy(struct gz_guard **guard)
 	if (g->quit_fd >= 0)
 		close(g->quit_fd);
 	gz_quota_destroy(&g->quota);
-	gz_accept_through(NULL, 0);
-	gz_door_destroy(&g->readers_door);
-	for (size_t i = 0; i < GZ_GUARD_SOCKETS_MAX; i++)
-		gz_door_destroy(&g->senders_doors[i]);
+	gz_accept_freely();
+	for (size_t i = 0; i < g->door_count; i++)
+		gz_door_destroy(&g->doors[i].door);
 	free(g);
 	*guard = NULL;
 }

@@ -52,7 +52,7 @@ enum gz_result gz_guard_create(void *context, const char *authorized_keys, const
  * @retval GZ_ERR_IO    the socket cannot be monitored; logged
  */
 enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *name,
-			      const struct gz_connections **out_connections);
+			      struct gz_connections **out_connections);
 
 /**
  * Start the thread. How many connections it allows depends on the files that may still be opened:
@@ -62,12 +62,16 @@ enum gz_result gz_guard_watch(struct gz_guard *guard, void *socket, const char *
  */
 enum gz_result gz_guard_start(struct gz_guard *guard);
 
-/** Let clients without keys at a local TCP port of a socket come through a door of the guard
- * (door.h): publishing sockets share one, each other socket has its own. Call it when the port has
- * just been bound. The doors of two guards cannot be open at a time. */
-void gz_guard_open_door(const struct gz_connections *connections, int port);
+/** Let clients at a local TCP port of a socket come through a door of the guard (door.h):
+ * publishing sockets share one, each other socket has its own. Call it when the port has just been
+ * bound. The doors of two guards cannot be open at a time. */
+void gz_guard_open_door(struct gz_connections *connections, int port);
 
-/** Tell the door a topic that the daemon sends. Call it before the door is opened. */
+/** The same for clients at the local socket with file @p path, which have doors of their own. Call
+ * it before the socket is bound. */
+void gz_guard_open_local_door(struct gz_connections *connections, const char *path);
+
+/** Tell the doors a topic that the daemon sends. Call it before the doors are opened. */
 void gz_guard_know_topic(struct gz_guard *guard, const char *topic);
 
 /** A frame of a client's message was received from the socket, and counts no longer as held by
@@ -83,6 +87,10 @@ uint64_t gz_guard_ended(const struct gz_guard *guard, enum gz_quota_reason reaso
 
 /** How many connections the socket has now, local ones and those over TCP. Threads: any. */
 uint32_t gz_connections_count(const struct gz_connections *connections);
+
+/** How many of them may want messages from the socket: those of which it is not known that they
+ * have subscribed to nothing, or to what they read at the board. Threads: any. */
+uint32_t gz_connections_listening(const struct gz_connections *connections);
 
 /** Stop the thread, free the guard and set *guard to NULL. Close the watched sockets first. Accepts
  *  a pointer to NULL. */

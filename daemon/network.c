@@ -89,7 +89,8 @@ void gz_network_endpoint(const struct gz_network *network, int port, char text[G
 		snprintf(text, GZ_ENDPOINT_SIZE, "tcp://%s:*", network->config->address);
 }
 
-static enum gz_result bind_local(const struct gz_network *network, void *socket, const char *name)
+static enum gz_result bind_local(const struct gz_network *network, void *socket, const char *name,
+				 struct gz_connections *connections)
 {
 	char endpoint[GZ_ENDPOINT_SIZE];
 	static const char scheme[] = "ipc://";
@@ -102,6 +103,7 @@ static enum gz_result bind_local(const struct gz_network *network, void *socket,
 		       network->directory);
 		return result;
 	}
+	gz_guard_open_local_door(connections, endpoint + sizeof scheme - 1);
 	if (zmq_bind(socket, endpoint) != 0) {
 		gz_err(network->log,
 		       "cannot bind %s: %s; set GAZECAST_RUNTIME_DIR to another directory",
@@ -180,15 +182,14 @@ enum gz_result gz_network_bind(const struct gz_network *network, void *socket, c
 			       const char *endpoint, int *out_port,
 			       const struct gz_connections **out_connections)
 {
-	const struct gz_connections *connections;
+	struct gz_connections *connections;
 	enum gz_result result = gz_guard_watch(network->guard, socket, name, &connections);
 	*out_port = 0;
 	if (result == GZ_OK)
-		result = bind_local(network, socket, name);
+		result = bind_local(network, socket, name, connections);
 	if (result == GZ_OK && network->config->tcp != GZ_TCP_OFF)
 		result = bind_tcp(network, socket, name, endpoint, out_port);
-	/* Clients with keys are known, and what they send is encrypted. */
-	if (result == GZ_OK && network->config->tcp == GZ_TCP_LOOPBACK)
+	if (result == GZ_OK && *out_port > 0)
 		gz_guard_open_door(connections, *out_port);
 	if (result == GZ_OK && out_connections)
 		*out_connections = connections;

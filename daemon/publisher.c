@@ -310,7 +310,7 @@ void gz_publisher_send(struct gz_publisher *publisher, const struct gz_outgoing_
 	show_board(publisher);
 	if (has_remote_readers(publisher))
 		send_batch(publisher, batch, send_remote);
-	if (gz_connections_count(publisher->latest.connections) > 0)
+	if (gz_connections_listening(publisher->latest.connections) > 0)
 		zmq_send(publisher->latest.socket, gaze->bytes, gaze->size, ZMQ_DONTWAIT);
 }
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Attack the TCP ports as any local user can, and say what that does to other readers and to the
-daemon's memory (docs/security.md):
+"""Attack the TCP ports as any local user can, or the local sockets, and say what that does to other
+readers and to the daemon's memory (docs/security.md):
 
     gazed --driver sim              # prints the port of the control socket
     scripts/reader_storm.py PORT PID [KIND...]
+    scripts/reader_storm.py DIRECTORY PID [KIND...]     # the runtime directory
 
 Only for a daemon of your own. Speaks ZMTP 3.0 without libzmq, which would be too slow.
 """
@@ -31,7 +32,13 @@ def frame(body):
 
 
 def connect(port):
-    connection = socket.create_connection(("127.0.0.1", port), 2)
+    """To a TCP port, or to the local socket with that path."""
+    if isinstance(port, int):
+        connection = socket.create_connection(("127.0.0.1", port), 2)
+    else:
+        connection = socket.socket(socket.AF_UNIX)
+        connection.settimeout(2)
+        connection.connect(port)
     connection.settimeout(2)
     return connection
 
@@ -248,16 +255,24 @@ def memory(pid):
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / MIB
 
 
+def port_of(control, request):
+    """The port that the daemon names, or the local socket beside that for control."""
+    if isinstance(control, int):
+        return ask(control, request)
+    name = {b"SUB_PORT": "stream", b"PUB_PORT": "inlet"}[request]
+    return os.path.join(os.path.dirname(control), name)
+
+
 def attack_of(kind, control, stream):
     """The port and the function."""
     if kind in KINDS:
         return stream, KINDS[kind]
     request, function = AT_OTHER_PORTS[kind]
-    return ask(control, request) if request else control, function
+    return port_of(control, request) if request else control, function
 
 
 def run(control, pid, kind):
-    port = ask(control, b"SUB_PORT")
+    port = port_of(control, b"SUB_PORT")
     attacked, function = attack_of(kind, control, port)
     before = peak = memory(pid)
     ready, stop = multiprocessing.Event(), multiprocessing.Event()
@@ -287,11 +302,13 @@ def main():
     limit = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(limit, 8192), limit))
     kinds = [*KINDS, *AT_OTHER_PORTS]
-    if (len(sys.argv) < 3 or not (sys.argv[1] + sys.argv[2]).isdigit() or
+    if (len(sys.argv) < 3 or not sys.argv[2].isdigit() or
             not set(sys.argv[3:]) <= set(kinds)):
         sys.exit(f"{__doc__}\nkinds: {' '.join(kinds)}")
+    place = sys.argv[1]
+    control = int(place) if place.isdigit() else os.path.join(place, "control")
     for kind in sys.argv[3:] or kinds:
-        run(int(sys.argv[1]), sys.argv[2], kind)
+        run(control, sys.argv[2], kind)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,9 @@
 #include "base/clock.h"
 #include "daemon/door.h"
 #include "daemon/zmtp_input.h"
+#include "protocol/board/board.h"
+
+enum { CHANNEL = 3 };
 
 static struct gz_door *door;
 
@@ -57,7 +60,7 @@ static int open_connection(void)
 
 static bool enter(int fd, int64_t now_ns)
 {
-	return gz_door_enter(door, fd, gz_connection_identity(fd), now_ns);
+	return gz_door_enter(door, fd, gz_connection_identity(fd), CHANNEL, now_ns);
 }
 
 static bool pass(int fd, const struct sent *sent, int64_t now_ns)
@@ -77,13 +80,25 @@ static bool come_with(int fd, const char *topic, int64_t now_ns)
 static int set_up(void **state)
 {
 	(void)state;
-	return gz_door_create(GZ_DOOR_READERS, &door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_OPEN, &door) == GZ_OK ? 0 : -1;
 }
 
 static int set_up_for_senders(void **state)
 {
 	(void)state;
-	return gz_door_create(GZ_DOOR_SENDERS, &door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_SENDERS, GZ_DOOR_OPEN, &door) == GZ_OK ? 0 : -1;
+}
+
+static int set_up_for_local_readers(void **state)
+{
+	(void)state;
+	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_LOCAL, &door) == GZ_OK ? 0 : -1;
+}
+
+static int set_up_for_readers_with_keys(void **state)
+{
+	(void)state;
+	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_KEYS, &door) == GZ_OK ? 0 : -1;
 }
 
 static int tear_down(void **state)
@@ -418,6 +433,201 @@ static void door_sender_of_an_old_version_is_soon_refused(void **state)
 	check_old_version();
 }
 
+/* A pair of connected sockets, of which the first is the door's. */
+static void open_pair(int fds[2])
+{
+	assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, fds),
+			 0);
+}
+
+/* Clients of the control port that keep their connections but say nothing. */
+static void door_idle_senders_give_way_the_longest_idle_first(void **state)
+{
+	(void)state;
+	enum { ALL = GZ_DOOR_CONNECTIONS };
+	static int fds[ALL + 2][2];
+	const int64_t idle_ns = (GZ_DOOR_IDLE_MS + 1) * GZ_NS_PER_MS;
+	for (int i = 0; i < ALL + 2; i++)
+		open_pair(fds[i]);
+	for (int i = 0; i < ALL; i++)
+		assert_true(come_with(fds[i][0], "topic", i));
+	/* The oldest one sends something once more; the second is then idle for longest. */
+	struct sent more = { 0 };
+	add_subscription(&more, "topic");
+	assert_true(pass(fds[0][0], &more, idle_ns / 2));
+	assert_false(come_with(fds[ALL][0], "topic", idle_ns / 2));
+	assert_true(come_with(fds[ALL][0], "topic", ALL + idle_ns));
+	assert_false(is_ended(fds[0][0]));
+	assert_true(is_ended(fds[1][0]));
+	assert_false(is_ended(fds[2][0]));
+	assert_true(come_with(fds[ALL + 1][0], "topic", ALL + idle_ns));
+	assert_true(is_ended(fds[2][0]));
+	assert_false(is_ended(fds[3][0]));
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_MANY), 3);
+	for (int i = 0; i < ALL + 2; i++) {
+		close(fds[i][0]);
+		close(fds[i][1]);
+	}
+}
+
+/* Local readers may have topics of their own, but not without limit. */
+static void door_local_reader_that_floods_is_ended(void **state)
+{
+	(void)state;
+	enum { ENOUGH = GZ_DOOR_TRUSTED_STRANGE_EACH / 201, ALL = GZ_DOOR_TRUSTED_STRANGE / 201 };
+	int flooding = open_connection(), reader = open_connection(), passed = 0;
+	char topic[201];
+	struct sent sent = { 0 };
+	fill_topic(topic);
+	add_subscription(&sent, topic);
+	assert_true(come_with(reader, "gaze.", 0));
+	assert_true(come_with(flooding, "gaze.", 0));
+	while (passed < 300000 && pass(flooding, &sent, 0) &&
+	       gz_door_refused(door, GZ_QUOTA_TOO_LARGE) == 0)
+		passed++;
+	assert_int_equal(passed, ENOUGH);
+	/* However often it comes again. */
+	for (int i = 0; i < 1000; i++)
+		passed += come_with(flooding, topic, 0) ? 1 : 0;
+	assert_in_range(passed, ENOUGH + 1, ALL);
+	assert_true(pass(reader, &(struct sent) { 0 }, 0));
+	close(flooding);
+	close(reader);
+}
+
+/* What is read at the board is no strange topic, and needs no message from the socket. */
+static void door_knows_who_wants_messages(void **state)
+{
+	(void)state;
+	enum { READERS = 300 };
+	static const char board[] = GZ_BOARD_TOPIC "gaze.";
+	int fds[READERS], silent = open_connection();
+	struct sent sent = { 0 }, gaze = { 0 };
+	add_greeting(&sent);
+	add_frame(&sent, 0, "\x01", board, sizeof board - 1);
+	add_subscription(&gaze, "gaze.");
+	assert_true(enter(silent, 0));
+	for (int i = 0; i < READERS; i++) {
+		fds[i] = open_connection();
+		assert_true(enter(fds[i], 0));
+		assert_true(pass(fds[i], &sent, 0));
+	}
+	assert_int_equal(gz_door_quiet(door, CHANNEL), READERS + 1);
+	assert_int_equal(gz_door_quiet(door, CHANNEL + 1), 0);
+	assert_true(pass(fds[0], &gaze, 0));
+	assert_true(pass(fds[0], &gaze, 0));
+	assert_int_equal(gz_door_quiet(door, CHANNEL), READERS);
+	gz_door_leave(door, fds[0], 0);
+	gz_door_leave(door, fds[1], 0);
+	assert_int_equal(gz_door_quiet(door, CHANNEL), READERS - 1);
+	/* One that has ended unnoticed is found, one that is there stays. */
+	gz_door_look(door, silent, 0);
+	assert_int_equal(gz_door_quiet(door, CHANNEL), READERS - 1);
+	close(silent);
+	gz_door_look(door, silent, 0);
+	gz_door_look(door, -1, 0);
+	gz_door_look(door, GZ_QUOTA_DESCRIPTORS, 0);
+	assert_int_equal(gz_door_quiet(door, CHANNEL), READERS - 2);
+	for (int i = 0; i < READERS; i++)
+		close(fds[i]);
+}
+
+/* A sealed message of CURVE with @p size bytes of content. */
+static void add_sealed(struct sent *sent, size_t size)
+{
+	char content[GZ_DOOR_SEAL_SIZE - 8 + 201] = { 0 };
+	assert_true(size <= 201);
+	add_frame(sent, 0, "\x07MESSAGE", content, GZ_DOOR_SEAL_SIZE - 8 + size);
+}
+
+/* The first commands of CURVE have 200 and about 300 bytes. */
+static void add_sealed_handshake(struct sent *sent)
+{
+	static const unsigned char greeting[64] = { 0xff, 0, 0, 0,   0,   0,   0,   0,  1,
+						    0x7f, 3, 1, 'C', 'U', 'R', 'V', 'E' };
+	char rest[200] = { 0 };
+	add_bytes(sent, greeting, sizeof greeting);
+	add_frame(sent, 4, "\x05HELLO", rest, 194);
+	add_frame(sent, 4, "\x08INITIATE", rest, 200);
+}
+
+static void let_in_with_key(int fd, int64_t now_ns)
+{
+	struct sent sent = { 0 };
+	add_sealed_handshake(&sent);
+	add_sealed(&sent, 6);
+	assert_true(enter(fd, now_ns));
+	assert_true(pass(fd, &sent, now_ns));
+}
+
+static void door_sealed_messages_count_whatever_they_are(void **state)
+{
+	(void)state;
+	enum { ENOUGH = GZ_DOOR_TRUSTED_STRANGE_EACH / 201 };
+	int flooding = open_connection(), reader = open_connection(), passed = 0;
+	int third = open_connection();
+	struct sent large = { 0 }, heartbeat = { 0 };
+	add_sealed(&large, 201);
+	add_sealed(&heartbeat, 7);
+	let_in_with_key(reader, 0);
+	let_in_with_key(third, 0);
+	let_in_with_key(flooding, 0);
+	while (passed < 300000 && pass(flooding, &large, 0) &&
+	       gz_door_refused(door, GZ_QUOTA_TOO_LARGE) == 0)
+		passed++;
+	assert_int_equal(passed, ENOUGH);
+	/* Heartbeats go on for ever. */
+	for (int s = 0; s < 10000; s++)
+		assert_true(pass(reader, &heartbeat, s * GZ_NS_PER_S));
+	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 1);
+	/* A flood of short messages ends, too. */
+	passed = 0;
+	while (passed < 300000 && pass(third, &heartbeat, 10000 * GZ_NS_PER_S) &&
+	       gz_door_refused(door, GZ_QUOTA_TOO_LARGE) == 1)
+		passed++;
+	const int most = (GZ_DOOR_TRUSTED_READER_COST + 10000 * GZ_DOOR_READER_COST_PER_S +
+			  GZ_DOOR_SHARED_COST) /
+			 70;
+	assert_in_range(passed, 1000, most);
+	close(flooding);
+	close(reader);
+	close(third);
+}
+
+/* Strangers without a key that fill the house, or send much, harm nobody who has one. */
+static void door_strangers_give_way_to_clients_with_keys(void **state)
+{
+	(void)state;
+	enum { ALL = GZ_DOOR_TRUSTED_CONNECTIONS };
+	static int fds[ALL + 1][2];
+	struct sent begin = { 0 }, garbage = { 0 };
+	const int64_t later_ns = (GZ_DOOR_HANDSHAKE_MS + 1) * GZ_NS_PER_MS;
+	add_sealed_handshake(&begin);
+	for (int i = 0; i < 10; i++)
+		add_frame(&garbage, 4, "\x05HELLO", (const char[200]) { 0 }, 200);
+	for (int i = 0; i <= ALL; i++)
+		open_pair(fds[i]);
+	let_in_with_key(fds[0][0], 0);
+	for (int i = 1; i < ALL; i++)
+		assert_true(enter(fds[i][0], i));
+	/* They are refused beyond what each has for itself, and nobody shares with them. */
+	assert_true(pass(fds[1][0], &begin, ALL));
+	assert_true(pass(fds[1][0], &garbage, ALL));
+	assert_false(pass(fds[1][0], &garbage, ALL));
+	assert_true(enter(fds[1][0], ALL));
+	let_in_with_key(fds[ALL][0], later_ns);
+	assert_true(is_ended(fds[2][0]));
+	assert_false(is_ended(fds[0][0]));
+	for (int i = 0; i < 500; i++)
+		assert_true(enter(fds[2 + i][0], 2 * later_ns));
+	assert_false(is_ended(fds[0][0]));
+	assert_false(is_ended(fds[ALL][0]));
+	for (int i = 0; i <= ALL; i++) {
+		close(fds[i][0]);
+		close(fds[i][1]);
+	}
+}
+
 /* A descriptor may be another file by the time its bytes come. */
 static void door_asks_nothing_of_other_connections(void **state)
 {
@@ -430,7 +640,7 @@ static void door_asks_nothing_of_other_connections(void **state)
 	assert_true(enter(fd, 0));
 	assert_true(
 		gz_door_pass(door, fd, gz_connection_identity(fd) + 1, sent.bytes, sent.size, 0));
-	assert_false(gz_door_enter(door, GZ_QUOTA_DESCRIPTORS, 1, 0));
+	assert_false(gz_door_enter(door, GZ_QUOTA_DESCRIPTORS, 1, CHANNEL, 0));
 	assert_int_equal(gz_door_refused(door, GZ_QUOTA_TOO_LARGE), 0);
 	gz_door_leave(door, -1, 0);
 	close(fd);
@@ -439,6 +649,10 @@ static void door_asks_nothing_of_other_connections(void **state)
 #define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
 #define SENDERS_TEST(function) \
 	cmocka_unit_test_setup_teardown(function, set_up_for_senders, tear_down)
+#define LOCAL_TEST(function) \
+	cmocka_unit_test_setup_teardown(function, set_up_for_local_readers, tear_down)
+#define KEYS_TEST(function) \
+	cmocka_unit_test_setup_teardown(function, set_up_for_readers_with_keys, tear_down)
 
 TEST_SUITE(door)
 {
@@ -456,6 +670,11 @@ TEST_SUITE(door)
 		SENDERS_TEST(door_senders_share_what_libzmq_holds),
 		SENDERS_TEST(door_message_without_end_is_refused),
 		SENDERS_TEST(door_sender_of_an_old_version_is_soon_refused),
+		SENDERS_TEST(door_idle_senders_give_way_the_longest_idle_first),
+		LOCAL_TEST(door_local_reader_that_floods_is_ended),
+		LOCAL_TEST(door_knows_who_wants_messages),
+		KEYS_TEST(door_sealed_messages_count_whatever_they_are),
+		KEYS_TEST(door_strangers_give_way_to_clients_with_keys),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -215,16 +216,23 @@ static void connect_idly(int port, int *sockets, int count)
 	}
 }
 
-/* Send what a reader of ZMTP 3 sends until the daemon takes subscriptions. */
-static void shake_hands(int fd)
+/* Send what a client of ZMTP 3 sends until the daemon takes messages. @param kind  SUB or PUB */
+static void shake_hands_as(int fd, const char *kind)
 {
 	static const unsigned char greeting[64] = { 0xff, 0,    0, 0, 0,   0,   0,   0,
 						    1,    0x7f, 3, 0, 'N', 'U', 'L', 'L' };
-	static const char ready[] = "\x04\x19\x05READY\x0bSocket-Type\0\0\0\3SUB";
-	unsigned char answer[sizeof greeting + 28]; /* READY of an XPUB has 28 bytes */
+	char ready[] = "\x04\x19\x05READY\x0bSocket-Type\0\0\0\3...";
+	/* READY of an XPUB has 28 bytes, that of a SUB and its subscription have more. */
+	unsigned char answer[sizeof greeting + 28];
+	memcpy(ready + sizeof ready - 4, kind, 3);
 	assert_int_equal(send(fd, greeting, sizeof greeting, MSG_NOSIGNAL), sizeof greeting);
 	assert_int_equal(send(fd, ready, sizeof ready - 1, MSG_NOSIGNAL), sizeof ready - 1);
 	assert_int_equal(recv(fd, answer, sizeof answer, MSG_WAITALL), sizeof answer);
+}
+
+static void shake_hands(int fd)
+{
+	shake_hands_as(fd, "SUB");
 }
 
 /* Subscribe to @p count topics of 200 bytes that nobody else has. The daemon may end the connection
@@ -271,6 +279,119 @@ static void gazed_readers_with_many_strange_subscriptions_are_refused(void **sta
 	assert_non_null(strstr(gazed_said(&gazed), "sent too many subscriptions"));
 }
 
+static int connect_locally(const char *name)
+{
+	struct sockaddr_un address = { .sun_family = AF_UNIX };
+	int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+	snprintf(address.sun_path, sizeof address.sun_path, "%s/%s", place.directory, name);
+	assert_true(fd >= 0);
+	assert_return_code(connect(fd, (struct sockaddr *)&address, sizeof address), errno);
+	return fd;
+}
+
+static long resident_kib(const struct gazed_process *gazed)
+{
+	char path[64];
+	long pages = 0;
+	snprintf(path, sizeof path, "/proc/%d/statm", (int)gazed->pid);
+	FILE *file = fopen(path, "re");
+	assert_non_null(file);
+	assert_int_equal(fscanf(file, "%*s %ld", &pages), 1);
+	fclose(file);
+	return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+/* Subscribe to new topics until the daemon ends the connection, slowly enough for libzmq to keep
+ * up. @return how many were sent */
+static int subscribe_until_ended(int fd, int connection, int most)
+{
+	enum { AT_ONCE = 20 };
+	int sent = 0;
+	char byte;
+	while (sent < most) {
+		subscribe_strangely(fd, connection * most + sent, AT_ONCE);
+		sent += AT_ONCE;
+		ssize_t size = recv(fd, &byte, 1, MSG_DONTWAIT);
+		if (size == 0 || (size < 0 && errno != EAGAIN))
+			return sent;
+		gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS / 10);
+	}
+	return sent;
+}
+
+/* The other test's flood at the local socket, by one program that comes again and again. */
+static void gazed_local_flood_of_subscriptions_is_ended(void **state)
+{
+	(void)state;
+	enum { TOPICS = 300000, ENOUGH = 2000, TIMES = 10, MEMORY_KIB = 8192, GAP_MS = 500 };
+	struct reader reader;
+	struct gazed_process gazed;
+	const char *const arguments[] = { NULL };
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &gazed);
+	gazed_wait_ready(&place, &gazed);
+	reader_open(&reader, &place, "");
+	reader_receive_gaze(&reader, 10);
+	long before_kib = resident_kib(&gazed);
+	for (int i = 0; i < TIMES; i++) {
+		int fd = connect_locally("stream");
+		shake_hands(fd);
+		assert_true(subscribe_until_ended(fd, i, TOPICS) < ENOUGH);
+		close(fd);
+		/* The stream goes on meanwhile. */
+		assert_true(reader_receive(&reader, GAP_MS));
+	}
+	reader_receive_gaze(&reader, reader.gaze_count + 10);
+	while (reader.status.refused[GZ_REFUSAL_SUBSCRIPTIONS] < TIMES)
+		assert_true(reader_receive(&reader, 2000));
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+	assert_in_range(resident_kib(&gazed), 0, before_kib + MEMORY_KIB);
+#else
+	(void)before_kib;
+#endif
+	reader_close(&reader);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	assert_non_null(strstr(gazed_said(&gazed), "at a local socket are closed"));
+}
+
+/* Connections that say nothing fill a port only until somebody else comes. */
+static void gazed_silent_connections_give_way(void **state)
+{
+	(void)state;
+	enum { SILENT = 256 };
+	static int silent[2][SILENT];
+	char bytes[64];
+	struct gazed_process gazed;
+	const char *const arguments[] = { "--control", "tcp://127.0.0.1:*", NULL };
+	gazed_spawn(&(struct gazed_start) { .place = &place, .arguments = arguments }, &gazed);
+	gazed_wait_ready(&place, &gazed);
+	int stream = atoi(gazed_request(&place, "SUB_PORT", NULL));
+	int inlet = atoi(gazed_request(&place, "PUB_PORT", NULL));
+	connect_idly(stream, silent[0], SILENT);
+	connect_idly(inlet, silent[1], SILENT);
+	gz_clock_sleep_until_ns(gz_clock_now_ns() + 300 * GZ_NS_PER_MS);
+	for (int i = 0; i < 2; i++) {
+		static const unsigned char subscription[] = { 0, 6, 1, 'g', 'a', 'z', 'e', '.' };
+		int newcomer;
+		connect_idly(i == 0 ? stream : inlet, &newcomer, 1);
+		shake_hands_as(newcomer, i == 0 ? "SUB" : "PUB");
+		assert_int_equal(send(newcomer, subscription, sizeof subscription, MSG_NOSIGNAL),
+				 sizeof subscription);
+		/* The reader gets gaze, and the client of the inlet a subscription. */
+		assert_int_equal(recv(newcomer, bytes, 1, 0), 1);
+		/* The oldest one has given way, after the daemon's greeting. */
+		while (recv(silent[i][0], bytes, sizeof bytes, 0) > 0)
+			;
+		assert_true(recv(silent[i][1], bytes, sizeof bytes, 0) > 0);
+		assert_int_equal(recv(silent[i][1], bytes, sizeof bytes, MSG_DONTWAIT), -1);
+		close(newcomer);
+	}
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	for (int i = 0; i < SILENT; i++) {
+		close(silent[0][i]);
+		close(silent[1][i]);
+	}
+}
+
 static void gazed_with_more_connections_than_its_soft_limit_of_files_goes_on(void **state)
 {
 	(void)state;
@@ -310,6 +431,8 @@ TEST_SUITE(faults)
 		TEST(gazed_serves_many_readers_without_a_gap),
 		TEST(gazed_with_more_connections_than_its_soft_limit_of_files_goes_on),
 		TEST(gazed_readers_with_many_strange_subscriptions_are_refused),
+		TEST(gazed_local_flood_of_subscriptions_is_ended),
+		TEST(gazed_silent_connections_give_way),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -495,6 +495,72 @@ static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **st
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
+static long resident_kib(const struct gazed_process *gazed)
+{
+	char path[64];
+	long pages = 0;
+	snprintf(path, sizeof path, "/proc/%d/statm", (int)gazed->pid);
+	FILE *file = fopen(path, "re");
+	assert_non_null(file);
+	assert_int_equal(fscanf(file, "%*s %ld", &pages), 1);
+	fclose(file);
+	return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+/* A reader whose key is known, but who subscribes without an end. */
+static void curve_flood_of_subscriptions_is_ended(void **state)
+{
+	(void)state;
+	enum { TOPICS = 20000, SAMPLES = 200, MEMORY_KIB = 8192 };
+	char endpoint[64], topic[200];
+	struct gz_keys keys = own_keys();
+	authorize(keys.public_key);
+	struct gazed_process gazed = start_curve();
+	snprintf(endpoint, sizeof endpoint, "tcp://127.0.0.1:%d", port_by("SUB_PORT"));
+	struct gz_stream *stream;
+	struct gz_message message;
+	assert_int_equal(gz_stream_open_with_keys(endpoint, NULL, &keys, &captured.log, &stream),
+			 GZ_OK);
+	assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
+	long before_kib = resident_kib(&gazed);
+	void *context = zmq_ctx_new(), *flood = zmq_socket(context, ZMQ_SUB);
+	const int zero = 0;
+	zmq_setsockopt(flood, ZMQ_LINGER, &zero, sizeof zero);
+	zmq_setsockopt(flood, ZMQ_SNDHWM, &zero, sizeof zero);
+	zmq_setsockopt(flood, ZMQ_CURVE_SERVERKEY, keys.server_key, GZ_KEY_TEXT_SIZE);
+	zmq_setsockopt(flood, ZMQ_CURVE_PUBLICKEY, keys.public_key, GZ_KEY_TEXT_SIZE);
+	zmq_setsockopt(flood, ZMQ_CURVE_SECRETKEY, keys.secret_key, GZ_KEY_TEXT_SIZE);
+	memset(topic, 'x', sizeof topic);
+	for (int i = 0; i < TOPICS; i++) {
+		snprintf(topic, 16, "%d", i);
+		zmq_setsockopt(flood, ZMQ_SUBSCRIBE, topic, sizeof topic);
+	}
+	assert_int_equal(zmq_connect(flood, endpoint), 0);
+	/* Its connection is ended; the other reader misses nothing. */
+	struct gz_status status = { .rate_hz_nominal = 0 };
+	for (int samples = 0; samples < SAMPLES || status.refused[GZ_REFUSAL_SUBSCRIPTIONS] == 0;) {
+		assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
+		samples += message.kind == GZ_MESSAGE_GAZE;
+		if (message.kind == GZ_MESSAGE_STATUS)
+			status = message.status;
+	}
+	struct gz_stream_counters counters = { 0 };
+	gz_stream_get_counters(stream, &counters);
+	assert_int_equal(counters.lost, 0);
+	assert_int_equal(counters.connections, 1);
+#if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
+	assert_in_range(resident_kib(&gazed), 0, before_kib + MEMORY_KIB);
+#else
+	(void)before_kib;
+#endif
+	gz_stream_close(&stream);
+	zmq_close(flood);
+	zmq_ctx_term(context);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	/* Either the door or the quota was first. */
+	assert_true(count_said(&gazed, "too many subscriptions") > 0);
+}
+
 static void curve_local_sockets_need_no_key(void **state)
 {
 	(void)state;
@@ -666,6 +732,7 @@ TEST_SUITE(security)
 		TEST(client_with_keys_is_told_that_the_daemon_has_none),
 		TEST(curve_authorized_keys_are_read_again_when_they_change),
 		TEST(curve_flood_of_refused_clients_takes_nothing_from_a_reader),
+		TEST(curve_flood_of_subscriptions_is_ended),
 		TEST(curve_local_sockets_need_no_key),
 		TEST(curve_peer_of_an_older_protocol_hears_nothing),
 		TEST(curve_without_a_safe_secret_key_is_refused_at_start),
