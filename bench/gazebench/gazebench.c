@@ -38,6 +38,8 @@ static const struct item items[] = {
 	{ "path", "random:N", "N places by the seed" },
 	{ "path", "centre", "where the camera looks at" },
 	{ "path", "X,Y", "one place, from 0,0 top left to 1,1" },
+	{ "path", "FILE.csv", "places of a table, shares of the picture" },
+	{ "path", "FILE.csv:WxH", "the same in pixels of a picture of this size" },
 	{ "path", "FILE.gzl", "a recording, one point a fixation" },
 	{ "path", "FILE.gzl:samples", "a recording, one point a sample" },
 	{ "metric", "psnr_db", "peak signal-to-noise ratio, dB" },

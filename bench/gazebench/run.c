@@ -50,7 +50,8 @@ static const struct gz_option options[] = {
 	  .max = GZ_PATH_SIZE,
 	  .preset = "sweep:s:64",
 	  .help = "where the gaze goes: sweep:s, sweep:s:N, grid:NxM, random:N, centre, X,Y, "
-		  "FILE.gzl (one point a fixation), FILE.gzl:samples" },
+		  "FILE.csv (shares), FILE.csv:WxH (pixels), FILE.gzl (one point a fixation), "
+		  "FILE.gzl:samples" },
 	{ .key = "methods",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(methods),

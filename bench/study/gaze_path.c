@@ -7,6 +7,7 @@
 
 #include "base/portable.h"
 #include "base/text.h"
+#include "bench/study/gaze_path_table.h"
 #include "filter/pipeline.h"
 #include "protocol/gaze_log.h"
 #include "sim/random.h"
@@ -140,6 +141,23 @@ static enum gz_result add_recording(const char *file, bool samples, const struct
 	return result;
 }
 
+/* ---- tables ---- */
+
+static enum gz_result take_place(void *user, struct gz_point gaze)
+{
+	return append_path_point(user, gaze);
+}
+
+static enum gz_result add_table(const char *file, const int size[2], const struct gz_log *log,
+				struct gz_gaze_path *path)
+{
+	const enum gz_result result = gz_gaze_path_table_read(file, size, log, take_place, path);
+	if (result != GZ_OK || path->count > 0)
+		return result;
+	gz_err(log, "%s: holds no place; give two numbers a line, x and y", file);
+	return GZ_ERR_FORMAT;
+}
+
 /* ---- paths ---- */
 
 bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_display *b)
@@ -156,8 +174,8 @@ bool gz_gaze_path_same_display(const struct gz_display *a, const struct gz_displ
 static enum gz_result refuse_path(const char *text, const struct gz_log *log)
 {
 	gz_err(log,
-	       "%s: no such path: sweep:s, sweep:s:N, grid:NxM, random:N, centre, X,Y, FILE.gzl or "
-	       "FILE.gzl:samples, of at most %d points",
+	       "%s: no such path: sweep:s, sweep:s:N, grid:NxM, random:N, centre, X,Y, FILE.csv, "
+	       "FILE.csv:WxH, FILE.gzl or FILE.gzl:samples, of at most %d points",
 	       text, GZ_STUDY_POINTS_MAX);
 	return GZ_ERR_INVAL;
 }
@@ -240,10 +258,36 @@ static bool ends_with(const char *text, const char *end)
 	return length > end_length && strcmp(text + length - end_length, end) == 0;
 }
 
+/* What follows FILE.csv in a path: nothing, or the size that its pixels refer to. */
+static bool parse_table(const char *text, char file[GZ_PATH_SIZE], int size[2], bool *out_sized)
+{
+	static const char ending[] = ".csv";
+	const size_t length = strlen(text);
+	const char *colon = strrchr(text, ':'), *height;
+	char width[GZ_NAME_SIZE];
+	long long pixels[2];
+	*out_sized = !ends_with(text, ending);
+	const size_t file_length = *out_sized && colon ? (size_t)(colon - text) : length;
+	if (file_length >= GZ_PATH_SIZE || file_length < sizeof ending ||
+	    strncmp(text + file_length - strlen(ending), ending, strlen(ending)) != 0)
+		return false;
+	snprintf(file, GZ_PATH_SIZE, "%.*s", (int)file_length, text);
+	if (!*out_sized)
+		return true;
+	if (!split(colon + 1, 'x', width, &height) || !parse_count(width, &pixels[0]) ||
+	    !parse_count(height, &pixels[1]))
+		return false;
+	size[0] = (int)pixels[0];
+	size[1] = (int)pixels[1];
+	return true;
+}
+
 static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 				 const struct gz_log *log, struct gz_gaze_path *path)
 {
 	static const char samples[] = ":samples";
+	int size[2];
+	bool sized;
 	const char *text = settings->text;
 	long long count, rows;
 	struct gz_point gaze;
@@ -260,6 +304,8 @@ static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 		return append_path_point(path, (struct gz_point) { 0.5F, 0.5F });
 	if (parse_place(text, &gaze))
 		return append_path_point(path, gaze);
+	if (parse_table(text, file, size, &sized))
+		return add_table(file, sized ? size : NULL, log, path);
 	if (ends_with(text, ".gzl"))
 		return add_recording(text, false, log, path);
 	if (ends_with(text, ".gzl:samples") && strlen(text) < sizeof file) {
@@ -270,17 +316,21 @@ static enum gz_result add_points(const struct gz_gaze_path_settings *settings,
 	return refuse_path(text, log);
 }
 
-static bool is_recording(const char *text)
+/* Whether the path is in a file. */
+static bool is_file(const char *text)
 {
-	return ends_with(text, ".gzl") || ends_with(text, ".gzl:samples");
+	char file[GZ_PATH_SIZE];
+	int size[2];
+	bool sized;
+	return ends_with(text, ".gzl") || ends_with(text, ".gzl:samples") ||
+	       parse_table(text, file, size, &sized);
 }
 
 enum gz_result gz_gaze_path_check(const char *text, const struct gz_log *log)
 {
 	const struct gz_gaze_path_settings settings = { .text = text };
 	struct gz_gaze_path path = { 0 };
-	const enum gz_result result =
-		is_recording(text) ? GZ_OK : add_points(&settings, log, &path);
+	const enum gz_result result = is_file(text) ? GZ_OK : add_points(&settings, log, &path);
 	gz_gaze_path_free(&path);
 	return result;
 }

@@ -1,6 +1,7 @@
 /**
  * @file
- * Where the gaze goes in a study: a curve, a grid, random places, one place, or a recording.
+ * Where the gaze goes in a study: a curve, a grid, random places, one place, a table, or a
+ * recording.
  *
  *   sweep:s[:N]       the mirrored S of Bauer 2018: x = 1/2 + .4 sin(2 pi t), y = .05 + .9 t, at N
  *                     points t = (i + 1/2) / N; 584 as in his table 5.1 unless N is given
@@ -8,6 +9,8 @@
  *   random:N          N places, uniform over the picture, by the seed
  *   centre            the middle of the picture, which is where a camera's look_at appears
  *   X,Y               one place, normalised
+ *   FILE.csv          places of a table (gaze_path_table.h), as shares of the picture
+ *   FILE.csv:WxH      the same in pixels of a picture of this size
  *   FILE.gzl          a recording, run through the daemon's pipeline in process with the recorded
  *                     settings: one point for each fixation, at its centre, in their order
  *   FILE.gzl:samples  the same, one point for each sample while gaze is there
@@ -47,13 +50,14 @@ struct gz_gaze_path {
  *
  * @param[out] out_path  1 to GZ_STUDY_POINTS_MAX points; the caller's: gz_gaze_path_free()
  * @retval GZ_ERR_INVAL      no such path; logged with the possible ones
- * @retval GZ_ERR_FORMAT     a recording that is none, or without valid gaze; logged
+ * @retval GZ_ERR_FORMAT     a recording that is none, or without valid gaze; a table with a line
+ *                           that is no place, or without places; logged
  * @retval GZ_ERR_NOT_FOUND, GZ_ERR_IO, GZ_ERR_NO_MEM  logged
  */
 enum gz_result gz_gaze_path_make(const struct gz_gaze_path_settings *settings,
 				 const struct gz_log *log, struct gz_gaze_path *out_path);
 
-/** Check the form of a path; a recording's content is not read.
+/** Check the form of a path; the content of files is not read.
  *  GZ_ERR_INVAL: logged with the possible ones; GZ_ERR_NO_MEM. */
 enum gz_result gz_gaze_path_check(const char *text, const struct gz_log *log);
 

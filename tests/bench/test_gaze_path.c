@@ -151,6 +151,7 @@ static void unknown_path_is_refused(void **state)
 	static const char *const texts[] = { "",          "sweep",       "sweep:t",
 					     "sweep:s:0", "sweep:s:1x",  "sweep:s:100001",
 					     "grid:3",    "grid:0x3",    "grid:400x400",
+					     "a.csv:",    "a.csv:64",    "a.csv:64x0",
 					     "random:",   "random:-1",   "0.5,",
 					     "nan,0.5",   "0.5,0.5,0.5", "1e3,0" };
 	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
@@ -242,6 +243,66 @@ static void missing_or_damaged_recording_is_refused(void **state)
 	assert_int_equal(gz_gaze_path_make(&settings, &captured.log, &path), GZ_ERR_FORMAT);
 }
 
+/* The path of a table of this text. */
+static enum gz_result table_path(const char *text, const char *size, struct gz_gaze_path *out_path)
+{
+	char name[] = "/tmp/gazecast-test-path-XXXXXX.csv", path[64];
+	const int descriptor = mkstemps(name, 4);
+	FILE *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	assert_int_equal(fclose(file), 0);
+	snprintf(path, sizeof path, "%s%s", name, size);
+	const struct gz_gaze_path_settings settings = { .text = path };
+	assert_int_equal(gz_gaze_path_check(path, &captured.log), GZ_OK);
+	const enum gz_result result = gz_gaze_path_make(&settings, &captured.log, out_path);
+	unlink(name);
+	return result;
+}
+
+static void table_gives_a_point_a_line_in_shares_or_pixels(void **state)
+{
+	(void)state;
+	struct gz_gaze_path path = { 0 };
+	assert_int_equal(table_path("x_px,y_px\n\n320,90,1.5\n# a remark\n-640;360\r\n 0\t180",
+				    ":640x360", &path),
+			 GZ_OK);
+	assert_int_equal(path.count, 3);
+	is_at(&path, 0, 0.5, 0.25);
+	is_at(&path, 1, -1, 1);
+	is_at(&path, 2, 0, 0.5);
+	gz_gaze_path_free(&path);
+	assert_int_equal(table_path("0.25,0.75\n", "", &path), GZ_OK);
+	assert_int_equal(path.count, 1);
+	is_at(&path, 0, 0.25, 0.75);
+	gz_gaze_path_free(&path);
+}
+
+static void table_that_is_none_is_refused_by_its_line(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text, *size, *says;
+	} tables[] = {
+		{ "x,y\n1,2\nhere,there\n", ":64x48", ".csv:3: not a place" },
+		{ "1\n", ":64x48", ".csv:1: not a place" },
+		{ "x,y\n", ":64x48", "holds no place" },
+		{ "0.5,0.5\n1\n", "", ".csv:2: not a place" },
+		{ "320,226\n", "", "FILE.csv:1920x1080" },
+		{ "nan,1\n0.5,inf\n", "", ".csv:2: not a place" },
+		{ "", "", "holds no place" },
+	};
+	for (size_t i = 0; i < sizeof tables / sizeof tables[0]; i++) {
+		struct gz_gaze_path path = { 0 };
+		assert_int_equal(table_path(tables[i].text, tables[i].size, &path), GZ_ERR_FORMAT);
+		if (!strstr(captured.last, tables[i].says))
+			fail_msg("%s, not: %s", captured.last, tables[i].says);
+	}
+	const struct gz_gaze_path_settings missing = { .text = "/nowhere/path.csv:64x48" };
+	struct gz_gaze_path path = { 0 };
+	assert_int_equal(gz_gaze_path_make(&missing, &captured.log, &path), GZ_ERR_NOT_FOUND);
+}
+
 static void displays_are_the_same_by_their_angles(void **state)
 {
 	(void)state;
@@ -282,6 +343,8 @@ TEST_SUITE(gaze_path)
 		cmocka_unit_test_setup(recording_by_samples_leaves_out_where_gaze_is_lost, begin),
 		cmocka_unit_test_setup(recording_without_valid_gaze_is_refused, begin),
 		cmocka_unit_test_setup(missing_or_damaged_recording_is_refused, begin),
+		cmocka_unit_test_setup(table_gives_a_point_a_line_in_shares_or_pixels, begin),
+		cmocka_unit_test_setup(table_that_is_none_is_refused_by_its_line, begin),
 		cmocka_unit_test_setup(displays_are_the_same_by_their_angles, begin),
 	};
 	return cmocka_run_group_tests(tests, name_log, remove_log);
