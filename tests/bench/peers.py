@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 sys.path[:0] = sys.argv[3:5]
+from bauer2018 import camera_lines
 from gazeview_frames import GAZES, Series, run_gazeview
 from picture import read_png, write_scene
 
@@ -41,6 +42,18 @@ class Peers(unittest.TestCase):
             for i, one in enumerate(pictures):
                 for other in pictures[:i]:
                     self.assertFalse(one == other, "two gazes made one picture")
+
+
+    def test_bauers_cameras_look_from_where_his_box_says(self):
+        half = "0.707106781"
+        row = {"qx": "0", "qy": half, "qz": "0", "qw": half, "tx": "0", "ty": "0.5", "tz": "2"}
+        named = dict(line.split(" = ") for line in camera_lines(row))
+        numbers = {name: [round(float(word), 6) + 0.0 for word in text.split()] for name, text in named.items()}
+        # A quarter turn about y takes z to x: the eye is at (2, .5, 0) of a box twice as large as ours.
+        self.assertEqual(numbers["eye"], [1, 0.25, 0])
+        self.assertEqual(numbers["look_at"], [0, 0.25, 0])
+        self.assertEqual(numbers["up"], [0, 1, 0])
+        self.assertAlmostEqual(numbers["fov_deg"][0], 59.977, places=3)
 
 
 if __name__ == "__main__":
