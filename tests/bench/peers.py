@@ -53,7 +53,7 @@ class Peers(unittest.TestCase):
         self.assertEqual(numbers["eye"], [1, 0.25, 0])
         self.assertEqual(numbers["look_at"], [0, 0.25, 0])
         self.assertEqual(numbers["up"], [0, 1, 0])
-        self.assertAlmostEqual(numbers["fov_deg"][0], 59.977, places=3)
+        self.assertAlmostEqual(numbers["fov_deg"][0], 59.979351, places=5)
 
 
 if __name__ == "__main__":
