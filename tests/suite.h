@@ -26,6 +26,13 @@
 #define SLOWNESS 1
 #endif
 
+/** Whether only what several threads do is of interest: a thread sanitizer watches. */
+#if defined __SANITIZE_THREAD__
+#define THREADS_ONLY 1
+#else
+#define THREADS_ONLY 0
+#endif
+
 /** The suite that a file tests/FOLDER/test_NAME.c holds: what would be its main(). The programs of
  *  gz_test_program() call it. @return 0 if it passes, 77 if it cannot run here */
 #define TEST_SUITE(name)                        \

@@ -29,6 +29,11 @@ LINE = re.compile(
     r"total ([\d.]+) ms gaze age (-|[\d.]+ ms)$"
 )
 
+# For tests of pictures, options and files, made by the same threads as in the other tests: a thread
+# sanitizer would see nothing else there.
+no_other_threads = unittest.skipIf(
+    os.environ.get("SANITIZED") == "thread", "only what several threads do is of interest")
+
 
 class Headless(unittest.TestCase):
     def setUp(self):
@@ -96,6 +101,7 @@ class Headless(unittest.TestCase):
         for method in METHODS[1:]:
             self.assertLess(rays[method], rays["standard"])
 
+    @no_other_threads
     def test_picture_equals_the_standard_one_only_at_the_gaze(self):
         for method in ("standard", "acuity"):
             self.good(
@@ -150,6 +156,7 @@ class Headless(unittest.TestCase):
         with open(self.path("a.png"), "rb") as a, open(self.path("b.png"), "rb") as b:
             self.assertTrue(a.read() == b.read())
 
+    @no_other_threads
     def test_image_sampling_rate_changes_the_rays_and_not_the_size(self):
         for rate in (0.5, 1, 2):
             name = "%g" % rate
@@ -162,17 +169,20 @@ class Headless(unittest.TestCase):
             self.assertEqual((frame["width"], frame["height"]), (96, 64))
             self.assertEqual((picture.width, picture.height), (96, 64))
 
+    @no_other_threads
     def test_cross_is_drawn_at_the_gaze(self):
         self.good("--gaze", "0.25,0.75", "--cross", "--out", self.path("cross.png"))
         self.assertEqual(read_png(self.path("cross.png")).at(24, 48), (255, 64, 64))
         for gaze in ("0,0", "1,1", "-5,0.5", "10,-10"):
             self.good("--gaze", gaze, "--cross", "--out", self.path("edge.png"))
 
+    @no_other_threads
     def test_gaze_outside_the_picture_is_not_clamped(self):
         for method in METHODS:
             self.good("--gaze", "-0.5,1.75", "--method", method, "--stats", self.path("stats.json"))
             self.assertEqual(self.frames()[0]["gaze"], [-0.5, 1.75])
 
+    @no_other_threads
     def test_distance_to_the_display_changes_the_plan(self):
         for name, distance in (("near", 300), ("far", 3000)):
             self.good(
@@ -280,12 +290,14 @@ class Headless(unittest.TestCase):
         done = self.good("--method", "standard", "--out", self.path("one.png"))
         self.assertEqual(done.stderr, "")
 
+    @no_other_threads
     def test_picture_without_a_file_is_told(self):
         done = self.good()
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.assertIn("--out FILE.png", done.stderr)
         self.assertEqual(self.good("--frames", 2).stderr, "")
 
+    @no_other_threads
     def test_budget_that_is_kept_changes_nothing(self):
         self.good(
             "--attention.budget_ms", 10000, "--frames", 50, "--stats", self.path("stats.json")
@@ -293,6 +305,7 @@ class Headless(unittest.TestCase):
         for frame in self.frames():
             self.assertEqual((frame["scale"], frame["budget"]), (1, "within"))
 
+    @no_other_threads
     def test_camera_inside_the_volume_and_parallel_to_up_works(self):
         for words in (
             ("--camera.eye", "0.01 0.02 0.03"),
@@ -307,6 +320,7 @@ class Headless(unittest.TestCase):
                 colours = {picture.at(x, y) for x in range(96) for y in range(64)}
                 self.assertGreater(len(colours), 20, "%r shows nothing" % (words,))
 
+    @no_other_threads
     def test_oriented_volume_gets_letters(self):
         for name, more in (("plain.png", ()), ("letters.png", ("--letters",))):
             done = self.good("--out", self.path(name), "--method", "standard", *more,
@@ -331,6 +345,7 @@ class Headless(unittest.TestCase):
             self.assertIsNone(frame["gaze"])
             self.assertIsNone(frame["gaze_age_ms"])
 
+    @no_other_threads
     def test_invalid_command_lines_are_refused_in_one_line(self):
         for words, said in (
             (("--gaze", "nan,0.5"), "--gaze"),
@@ -376,6 +391,7 @@ class Headless(unittest.TestCase):
             scene.write("\n".join(["[volume]", f"file = {self.path(name)}", *lines, *rest]))
         return path
 
+    @no_other_threads
     def test_volume_written_as_bricks_or_nrrd_looks_the_same(self):
         self.good("--out", self.path("scene.png"))
         wanted = read_png(self.path("scene.png"))
@@ -390,6 +406,7 @@ class Headless(unittest.TestCase):
             worst = max(abs(a - b) for a, b in pairs)
             self.assertLessEqual(worst, 1, name)
 
+    @no_other_threads
     def test_volume_that_cannot_be_written_is_refused_in_one_line(self):
         self.refused(self.write_volume("volume.raw"), ".gzb")
         self.refused(self.write_volume("no/volume.gzb"), "no/volume.gzb")
@@ -421,6 +438,7 @@ class Headless(unittest.TestCase):
             self.skipTest("nobody may run it")
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    @no_other_threads
     def test_camera_inside_the_volume_does_not_lengthen_steps(self):
         where = ("--camera.eye", "0.05 -0.15 0.02", "--camera.look_at", "0.3 0.5 0.1")
         pictures = []
@@ -430,6 +448,7 @@ class Headless(unittest.TestCase):
             pictures.append(read_png(self.path("in.png")))
         self.assertTrue(pictures[0] == pictures[1])
 
+    @no_other_threads
     def test_up_parallel_to_the_view_is_replaced_with_one_warning(self):
         pictures = []
         for up in ("0 0 2", "0 0 0", "1 0 0"):
@@ -483,6 +502,7 @@ class Headless(unittest.TestCase):
         self.assertEqual(ended, -signal.SIGTERM)
         self.assertEqual(self.frames(), [])
 
+    @no_other_threads
     def test_help_version_and_formats_go_to_stdout(self):
         for word, said in (("--help", "--gaze"), ("--version", "gazeview "), ("--formats", "NRRD .nrrd")):
             done = run(GAZEVIEW, word)
