@@ -1,5 +1,6 @@
 /* Draws a mesh with stipples and prints what it took, and how many points appear and vanish while
- * the view turns: illustration_drawing ball|ring|MESH WIDTHxHEIGHT OUT [POINTS [RADIUS [TURN]]].
+ * the view turns: illustration_drawing [--hatch] ball|ring|MESH WIDTHxHEIGHT OUT [POINTS
+ * [RADIUS [TURN]]]. With --hatch, lines of that width instead of discs of that radius.
  * The light stays with the picture. Writes OUT.png and OUT.svg, 0.1 mm a pixel. */
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +13,7 @@
 #include "base/vector.h"
 #include "base/workers.h"
 #include "drawing_planes.h"
+#include "render/illustration/hatch_lines.h"
 #include "render/illustration/stipple_points.h"
 #include "render/illustration/stipple_svg.h"
 #include "render/mesh/mesh_read.h"
@@ -45,13 +47,13 @@ static void ring_place(double u, double v, double place[3], double normal[3])
 static enum gz_result make_formula(formula_place *formula, struct gz_mesh *out_mesh)
 {
 	struct gz_mesh mesh;
-	const enum gz_result result = gz_mesh_allocate((uint64_t)(COLUMNS + 1) * (ROWS + 1),
+	const enum gz_result result = gz_mesh_allocate((uint64_t)COLUMNS * (ROWS + 1),
 						       (uint64_t)2 * COLUMNS * ROWS, &mesh);
 	if (result != GZ_OK)
 		return result;
 	for (uint32_t row = 0; row <= ROWS; row++)
-		for (uint32_t column = 0; column <= COLUMNS; column++) {
-			const size_t vertex = (size_t)row * (COLUMNS + 1) + column;
+		for (uint32_t column = 0; column < COLUMNS; column++) {
+			const size_t vertex = (size_t)row * COLUMNS + column;
 			double place[3], normal[3];
 			formula((double)column / COLUMNS, (double)row / ROWS, place, normal);
 			for (int axis = 0; axis < 3; axis++) {
@@ -62,8 +64,9 @@ static enum gz_result make_formula(formula_place *formula, struct gz_mesh *out_m
 	uint32_t(*triangle)[3] = mesh.triangles;
 	for (uint32_t row = 0; row < ROWS; row++)
 		for (uint32_t column = 0; column < COLUMNS; column++) {
-			const uint32_t a = row * (COLUMNS + 1) + column, b = a + COLUMNS + 1;
-			const uint32_t both[2][3] = { { a, b, a + 1 }, { a + 1, b, b + 1 } };
+			const uint32_t a = row * COLUMNS + column, b = a + COLUMNS;
+			const uint32_t c = row * COLUMNS + (column + 1) % COLUMNS, d = c + COLUMNS;
+			const uint32_t both[2][3] = { { a, b, c }, { c, b, d } };
 			memcpy(triangle, both, sizeof both);
 			triangle += 2;
 		}
@@ -76,14 +79,17 @@ struct drawing_request {
 	int size[2];
 	size_t points;
 	double radius, turn_deg;
+	bool hatch;
 };
 
 struct drawing_state {
 	struct gz_mesh mesh;
 	struct gz_stipple_points points;
+	struct gz_hatch_strokes strokes[2]; /* the second ones cross the first */
 	struct gz_workers *workers;
 	struct drawing_planes planes;
 	struct gz_stipple_discs discs;
+	struct gz_hatch_lines lines;
 	struct gz_stipple_sheet sheet;
 	double world_per_mm;
 	struct gz_camera camera;
@@ -98,17 +104,52 @@ static enum gz_result load_mesh(const char *what, const struct gz_log *log, stru
 	return gz_mesh_read(what, log, mesh);
 }
 
-static enum gz_result prepare_points(struct drawing_state *state, size_t count)
+/* Strokes by curvature, and others that cross them. */
+static enum gz_result prepare_strokes(struct drawing_state *state,
+				      const struct gz_mesh_points *points)
+{
+	enum { PASSES = 60 };
+	const struct gz_mesh *mesh = &state->mesh;
+	const double distance_mm = 0.8 * sqrt(points->area_mm2 / (double)points->count);
+	struct gz_curvature *curvatures = malloc(mesh->vertex_count * sizeof *curvatures);
+	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
+	const int64_t start_ns = gz_clock_now_ns();
+	enum gz_result result = curvatures && directions ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result == GZ_OK)
+		result = gz_mesh_curvatures(mesh, curvatures);
+	if (result == GZ_OK)
+		result = gz_hatch_directions(mesh, curvatures, PASSES, directions);
+	const int64_t directions_ns = gz_clock_now_ns();
+	for (int layer = 0; layer < 2 && result == GZ_OK; layer++) {
+		if (layer == 1)
+			gz_hatch_cross_directions(mesh, (const float(*)[3])directions, directions);
+		result = gz_hatch_strokes_make(mesh, (const float(*)[3])directions, points,
+					       distance_mm, &state->strokes[layer]);
+		printf("strokes %zu nodes %zu length %.0f mm\n", state->strokes[layer].stroke_count,
+		       state->strokes[layer].node_count, state->strokes[layer].length_mm);
+	}
+	printf("directions_ms %.0f strokes_ms %.0f\n", gz_ns_to_ms(directions_ns - start_ns),
+	       gz_ns_to_ms(gz_clock_now_ns() - directions_ns));
+	free(curvatures);
+	free(directions);
+	return result;
+}
+
+static enum gz_result prepare_points(struct drawing_state *state,
+				     const struct drawing_request *request)
 {
 	struct gz_mesh_points points = { 0 };
 	const int64_t start_ns = gz_clock_now_ns();
-	enum gz_result result = gz_mesh_points_make(&state->mesh, count, state->workers, &points);
+	enum gz_result result =
+		gz_mesh_points_make(&state->mesh, request->points, state->workers, &points);
 	const int64_t made_ns = gz_clock_now_ns();
 	if (result == GZ_OK)
 		result = gz_stipple_points_make(&state->mesh, &points, &state->points);
+	const int64_t ready_ns = gz_clock_now_ns();
+	if (result == GZ_OK && request->hatch)
+		result = prepare_strokes(state, &points);
 	printf("triangles %zu points %zu made_ms %.0f ready_ms %.0f\n", state->mesh.triangle_count,
-	       points.count, gz_ns_to_ms(made_ns - start_ns),
-	       gz_ns_to_ms(gz_clock_now_ns() - made_ns));
+	       points.count, gz_ns_to_ms(made_ns - start_ns), gz_ns_to_ms(ready_ns - made_ns));
 	gz_mesh_points_free(&points);
 	return result;
 }
@@ -149,11 +190,16 @@ static enum gz_result choose_points(struct drawing_state *state,
 					      .size_px = request->radius,
 					      .tolerance_px = GZ_STIPPLE_TOLERANCE_PX };
 	state->discs.count = 0;
+	state->lines.count = 0;
 	const int64_t start_ns = gz_clock_now_ns();
-	if (result == GZ_OK)
+	if (result == GZ_OK && !request->hatch)
 		result = gz_stipple_choose(&state->points, &view, state->workers, &state->discs);
-	printf("chosen %zu of %zu in %.2f ms\n", state->discs.count, state->points.count,
-	       gz_ns_to_ms(gz_clock_now_ns() - start_ns));
+	for (int layer = 0; layer < 2 && result == GZ_OK && request->hatch; layer++)
+		result = gz_hatch_choose(&state->strokes[layer], &view,
+					 layer == 0 ? GZ_HATCH_FIRST : GZ_HATCH_CROSS,
+					 state->workers, &state->lines);
+	printf("chosen %zu discs, %zu pieces of lines in %.2f ms\n", state->discs.count,
+	       state->lines.count, gz_ns_to_ms(gz_clock_now_ns() - start_ns));
 	return result;
 }
 
@@ -202,6 +248,9 @@ static enum gz_result draw_sheet(struct drawing_state *state, const struct drawi
 	if (result == GZ_OK)
 		result = gz_stipple_sheet_add_discs(&state->sheet, state->discs.discs,
 						    state->discs.count, state->workers);
+	if (result == GZ_OK)
+		result = gz_stipple_sheet_add_pieces(&state->sheet, state->lines.pieces,
+						     state->lines.count, state->workers);
 	printf("drawn in %.2f ms\n", gz_ns_to_ms(gz_clock_now_ns() - start_ns));
 	if (result == GZ_OK)
 		result = gz_stipple_sheet_to_image(&state->sheet, &image);
@@ -215,6 +264,7 @@ static enum gz_result draw_sheet(struct drawing_state *state, const struct drawi
 		result = gz_stipple_svg_open(&svg, path, request->size, 0.1, log);
 	if (result == GZ_OK) {
 		gz_stipple_svg_add_discs(&svg, state->discs.discs, state->discs.count);
+		gz_stipple_svg_add_pieces(&svg, state->lines.pieces, state->lines.count);
 		result = gz_stipple_svg_close(&svg);
 	}
 	gz_image_free(&image);
@@ -228,7 +278,7 @@ static enum gz_result run_drawing(struct drawing_state *state,
 	if (result == GZ_OK)
 		result = gz_workers_create(0, &state->workers);
 	if (result == GZ_OK)
-		result = prepare_points(state, request->points);
+		result = prepare_points(state, request);
 	if (result != GZ_OK)
 		return result;
 	aim_camera(state);
@@ -246,6 +296,9 @@ static bool parse_request(int argc, char **argv, struct drawing_request *out_req
 	long long points = 1000000;
 	double radius = 1.2, turn_deg = 0;
 	struct drawing_request request = { 0 };
+	request.hatch = argc > 1 && strcmp(argv[1], "--hatch") == 0;
+	argc -= request.hatch;
+	argv += request.hatch;
 	if (argc < 4 || argc > 7 ||
 	    sscanf(argv[2], "%dx%d", &request.size[0], &request.size[1]) != 2)
 		return false;
@@ -269,8 +322,9 @@ int main(int argc, char **argv)
 	struct drawing_state state = { 0 };
 	gz_log_init(&log, NULL, NULL, "*:warn");
 	if (!parse_request(argc, argv, &request)) {
-		fprintf(stderr, "illustration_drawing ball|ring|MESH WIDTHxHEIGHT OUT [POINTS "
-				"[RADIUS [TURN_DEG]]]\n");
+		fprintf(stderr,
+			"illustration_drawing [--hatch] ball|ring|MESH WIDTHxHEIGHT OUT [POINTS "
+			"[RADIUS [TURN_DEG]]]\n");
 		return 2;
 	}
 	const enum gz_result result = run_drawing(&state, &request, &log);
@@ -278,6 +332,9 @@ int main(int argc, char **argv)
 		fprintf(stderr, "illustration_drawing: %s\n", gz_result_text(result));
 	gz_mesh_free(&state.mesh);
 	gz_stipple_points_free(&state.points);
+	gz_hatch_strokes_free(&state.strokes[0]);
+	gz_hatch_strokes_free(&state.strokes[1]);
+	gz_hatch_lines_free(&state.lines);
 	gz_workers_destroy(&state.workers);
 	drawing_planes_free(&state.planes);
 	gz_stipple_discs_free(&state.discs);

@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/mesh/point_grid.h"
+
 enum {
 	STEPS_A_GRID = 4,    /* of the radius; after them the grid is made anew */
 	PASSES_A_STEP = 2,   /* chosen: a third gains 2 % of distance for 40 % of time */
 	PART_DARTS = 4096,   /* of a part of a job */
-	NO_POINT = -1,       /* the end of a list */
 	FACING_LIMIT = 8065, /* of packed normals: 127² cos 60 degrees */
 };
 
@@ -24,14 +25,6 @@ struct spread_point {
 	struct gz_mesh_point place;
 };
 
-/* A hashed grid of cells, each with a list of points. Cells may share a list: only distances tell.
- */
-struct spread_grid {
-	double origin[3], cells_per_mm;
-	int32_t *heads;
-	size_t mask; /* lists less 1; their number is a power of two */
-};
-
 struct spread {
 	const struct gz_mesh *mesh;
 	struct gz_workers *workers;
@@ -39,7 +32,7 @@ struct spread {
 	double area;
 	struct spread_point *points; /* by rank */
 	size_t count, wanted;
-	struct spread_grid grid;
+	struct gz_point_grid grid;
 	double radius;
 	/* The present pass. */
 	uint64_t seed;
@@ -48,16 +41,6 @@ struct spread {
 	size_t *free_counts;             /* of each part */
 	size_t parts_capacity;
 };
-
-/* The finaliser of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number
- * generators", OOPSLA 2014): a random number for each place in a sequence. */
-static uint64_t mixed_bits(uint64_t seed, uint64_t place)
-{
-	uint64_t z = seed + (place + 1) * UINT64_C(0x9e3779b97f4a7c15);
-	z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-	z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-	return z ^ (z >> 31);
-}
 
 /* 0 to 1, without 1. */
 static double share_of_bits(uint64_t bits)
@@ -137,7 +120,7 @@ static void pack_normal(const struct gz_mesh *mesh, struct spread_point *dart)
 
 static struct spread_point throw_dart(const struct spread *spread, size_t number, size_t triangle)
 {
-	const uint64_t bits = mixed_bits(spread->seed ^ UINT64_C(0x5bf03635), number);
+	const uint64_t bits = gz_mixed_bits(spread->seed ^ UINT64_C(0x5bf03635), number);
 	double u = (double)(bits >> 32) * 0x1p-32;
 	double v = (double)(bits & UINT32_MAX) * 0x1p-32;
 	if (u + v > 1) { /* the other half of the parallelogram */
@@ -150,21 +133,6 @@ static struct spread_point throw_dart(const struct spread *spread, size_t number
 	return dart;
 }
 
-static void find_cell(const struct spread_grid *grid, const float at[3], int64_t cell[3])
-{
-	const double limit = 0x1p40; /* such a mesh is far larger than its area; lists may be long
-				      */
-	for (int axis = 0; axis < 3; axis++)
-		cell[axis] = (int64_t)fmin(
-			floor(((double)at[axis] - grid->origin[axis]) * grid->cells_per_mm), limit);
-}
-
-/* Cells along x have lists one after the other. */
-static size_t row_of_lists(int64_t y, int64_t z)
-{
-	return (size_t)mixed_bits((uint64_t)y, (uint64_t)z);
-}
-
 /* Whether two points are on the same side of what they lie on. */
 static bool sides_agree(const int8_t a[4], const int8_t b[4])
 {
@@ -175,7 +143,7 @@ static bool list_is_clear(const struct spread *spread, size_t list, const struct
 			  float square)
 {
 	int32_t i = spread->grid.heads[list & spread->grid.mask];
-	while (i != NO_POINT) {
+	while (i != GZ_POINT_GRID_END) {
 		const struct spread_point *point = &spread->points[i];
 		const float x = point->at[0] - dart->at[0], y = point->at[1] - dart->at[1];
 		const float z = point->at[2] - dart->at[2];
@@ -189,14 +157,11 @@ static bool list_is_clear(const struct spread *spread, size_t list, const struct
 /* Whether no point is nearer to a dart than the radius. Most darts meet one in the middle row. */
 static bool dart_is_clear(const struct spread *spread, const struct spread_point *dart)
 {
-	static const int8_t rows[9][2] = { { 0, 0 }, { 0, 1 },  { 1, 0 },   { 0, -1 }, { -1, 0 },
-					   { 1, 1 }, { 1, -1 }, { -1, -1 }, { -1, 1 } };
 	const float square = (float)(spread->radius * spread->radius);
 	int64_t cell[3];
-	find_cell(&spread->grid, dart->at, cell);
-	for (size_t i = 0; i < 9; i++) {
-		const size_t list =
-			row_of_lists(cell[1] + rows[i][0], cell[2] + rows[i][1]) + (size_t)cell[0];
+	gz_point_grid_cell(&spread->grid, dart->at, cell);
+	for (int row = 0; row < GZ_POINT_GRID_ROWS; row++) {
+		const size_t list = gz_point_grid_list(&spread->grid, cell, row);
 		if (!list_is_clear(spread, list, dart, square) ||
 		    !list_is_clear(spread, list - 1, dart, square) ||
 		    !list_is_clear(spread, list + 1, dart, square))
@@ -208,12 +173,7 @@ static bool dart_is_clear(const struct spread *spread, const struct spread_point
 static void list_point(struct spread *spread, size_t number)
 {
 	struct spread_point *point = &spread->points[number];
-	int64_t cell[3];
-	find_cell(&spread->grid, point->at, cell);
-	int32_t *head = &spread->grid.heads[(row_of_lists(cell[1], cell[2]) + (size_t)cell[0]) &
-					    spread->grid.mask];
-	point->next = *head;
-	*head = (int32_t)number;
+	gz_point_grid_add(&spread->grid, point->at, (int32_t)number, &point->next);
 }
 
 /* Throws the darts of one part and keeps those that are clear of the points before the pass. */
@@ -227,7 +187,7 @@ static void throw_part(void *user, size_t part, int worker)
 	const double area_a_dart = spread->area / (double)spread->darts;
 	size_t triangle = find_triangle(spread, (double)begin * area_a_dart), count = 0;
 	for (size_t i = begin; i < end; i++) {
-		const double share = share_of_bits(mixed_bits(spread->seed, i));
+		const double share = share_of_bits(gz_mixed_bits(spread->seed, i));
 		const double area = ((double)i + share) * area_a_dart;
 		while (spread->area_sums[triangle] <= area &&
 		       triangle + 1 < spread->mesh->triangle_count)
@@ -253,7 +213,7 @@ static size_t gather_darts(struct spread *spread, size_t parts)
 static void shuffle_darts(struct spread_point *darts, size_t count, uint64_t seed)
 {
 	for (size_t i = count; i > 1; i--) {
-		const size_t other = (size_t)(share_of_bits(mixed_bits(~seed, i)) * (double)i);
+		const size_t other = (size_t)(share_of_bits(gz_mixed_bits(~seed, i)) * (double)i);
 		const struct spread_point moved = darts[i - 1];
 		darts[i - 1] = darts[other];
 		darts[other] = moved;
@@ -284,7 +244,7 @@ static enum gz_result throw_darts(struct spread *spread)
 	const enum gz_result result = reserve_darts(spread, parts);
 	if (result != GZ_OK)
 		return result;
-	spread->seed = mixed_bits(spread->seed, parts);
+	spread->seed = gz_mixed_bits(spread->seed, parts);
 	if (spread->workers)
 		gz_workers_run(spread->workers, throw_part, spread, parts);
 	else
@@ -304,20 +264,12 @@ static enum gz_result throw_darts(struct spread *spread)
 static enum gz_result make_grid(struct spread *spread)
 {
 	const double cells = spread->area / (spread->radius * spread->radius);
-	const double most = fmin(4 * cells + 1024, 4.0 * (double)GZ_MESH_POINTS_MAX);
-	size_t lists = 1024;
-	while ((double)lists < most)
-		lists *= 2;
-	free(spread->grid.heads);
-	spread->grid.heads = malloc(lists * sizeof *spread->grid.heads);
-	if (!spread->grid.heads)
-		return GZ_ERR_NO_MEM;
-	memset(spread->grid.heads, 0xff, lists * sizeof *spread->grid.heads); /* NO_POINT */
-	spread->grid.mask = lists - 1;
-	spread->grid.cells_per_mm = 1 / spread->radius;
-	for (size_t i = 0; i < spread->count; i++)
+	const enum gz_result result =
+		gz_point_grid_reset(&spread->grid, spread->radius,
+				    fmin(4 * cells + 1024, 4.0 * (double)GZ_MESH_POINTS_MAX));
+	for (size_t i = 0; result == GZ_OK && i < spread->count; i++)
 		list_point(spread, i);
-	return GZ_OK;
+	return result;
 }
 
 static void find_origin(struct spread *spread)
@@ -381,7 +333,7 @@ enum gz_result gz_mesh_points_make(const struct gz_mesh *mesh, size_t count,
 		result = hand_over(&spread, out_points);
 	free(spread.area_sums);
 	free(spread.points);
-	free(spread.grid.heads);
+	gz_point_grid_free(&spread.grid);
 	free(spread.free_darts);
 	free(spread.free_counts);
 	return result;

@@ -1,0 +1,396 @@
+/* Hatches: strokes traced over meshes, which of them show, and how dark the drawing is. */
+#include "suite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/workers.h"
+#include "drawn_meshes.h"
+#include "render/illustration/hatch_lines.h"
+
+enum { POINTS = 20000, EDGE = 200 };
+
+#define DISTANCE_MM 0.8
+
+static struct gz_mesh meshes[2];
+static struct gz_hatch_strokes strokes_of[2];
+
+/* Directions that go round the y axis. */
+static void make_directions(const struct gz_mesh *mesh, float (*directions)[3])
+{
+	for (size_t i = 0; i < mesh->vertex_count; i++) {
+		directions[i][0] = mesh->normals[i][2];
+		directions[i][1] = 0;
+		directions[i][2] = -mesh->normals[i][0];
+		if (i % 2) /* the sign does not count */
+			for (int axis = 0; axis < 3; axis++)
+				directions[i][axis] = -directions[i][axis];
+	}
+}
+
+static enum gz_result trace_body(enum drawn_body body, struct gz_hatch_strokes *out_strokes)
+{
+	const struct gz_mesh *mesh = &meshes[body];
+	struct gz_mesh_points points;
+	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
+	if (!directions)
+		return GZ_ERR_NO_MEM;
+	make_directions(mesh, directions);
+	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, &points);
+	if (result == GZ_OK)
+		result = gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points,
+					       DISTANCE_MM, out_strokes);
+	free(directions);
+	if (result == GZ_OK)
+		gz_mesh_points_free(&points);
+	return result;
+}
+
+static int make_strokes(void **state)
+{
+	(void)state;
+	for (int body = 0; body < 2; body++) {
+		meshes[body] = drawn_mesh((enum drawn_body)body);
+		if (trace_body((enum drawn_body)body, &strokes_of[body]) != GZ_OK)
+			return -1;
+	}
+	return 0;
+}
+
+static int free_strokes(void **state)
+{
+	(void)state;
+	for (int body = 0; body < 2; body++) {
+		gz_mesh_free(&meshes[body]);
+		gz_hatch_strokes_free(&strokes_of[body]);
+	}
+	return 0;
+}
+
+static void strokes_follow_their_directions_on_the_surface(void **state)
+{
+	(void)state;
+	const struct gz_hatch_strokes *strokes = &strokes_of[DRAWN_BALL];
+	assert_true(strokes->stroke_count > 500);
+	for (size_t i = 0; i < strokes->stroke_count; i++) {
+		const struct gz_hatch_node *nodes = strokes->nodes + strokes->strokes[i].first;
+		assert_true(strokes->strokes[i].count >= 2);
+		for (uint32_t k = 0; k < strokes->strokes[i].count; k++) {
+			const float *at = nodes[k].place;
+			const float radius = sqrtf(at[0] * at[0] + at[1] * at[1] + at[2] * at[2]);
+			assert_float_equal(radius, DRAWN_BALL_MM, 0.15);
+			/* they stay at their height, but for the corners of the mesh */
+			if (fabsf(at[1]) < 40)
+				assert_float_equal(at[1], nodes[0].place[1], 1.5);
+		}
+	}
+}
+
+static void nodes_of_a_stroke_follow_each_other(void **state)
+{
+	(void)state;
+	for (int body = 0; body < 2; body++) {
+		const struct gz_hatch_strokes *strokes = &strokes_of[body];
+		for (size_t i = 0; i < strokes->stroke_count; i++) {
+			const struct gz_hatch_node *nodes =
+				strokes->nodes + strokes->strokes[i].first;
+			for (uint32_t k = 1; k < strokes->strokes[i].count; k++) {
+				double square = 0;
+				for (int axis = 0; axis < 3; axis++)
+					square += pow((double)nodes[k].place[axis] -
+							      (double)nodes[k - 1].place[axis],
+						      2);
+				assert_true(sqrt(square) < 1.01 * DISTANCE_MM);
+			}
+		}
+	}
+}
+
+/* The least distance between the middles of two of the first strokes. */
+static double least_distance(const struct gz_hatch_strokes *strokes, size_t count)
+{
+	double least = INFINITY;
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < i; k++) {
+			const struct gz_hatch_stroke *a = &strokes->strokes[i];
+			const struct gz_hatch_stroke *b = &strokes->strokes[k];
+			const float *from = strokes->nodes[a->first + a->count / 2].place;
+			for (uint32_t node = 0; node < b->count; node++) {
+				const float *to = strokes->nodes[b->first + node].place;
+				double square = 0;
+				for (int axis = 0; axis < 3; axis++)
+					square += pow((double)to[axis] - (double)from[axis], 2);
+				least = fmin(least, square);
+			}
+		}
+	return sqrt(least);
+}
+
+static void any_beginning_of_the_strokes_lies_evenly(void **state)
+{
+	(void)state;
+	const struct gz_hatch_strokes *strokes = &strokes_of[DRAWN_BOARD];
+	const size_t counts[3] = { 20, 60, 200 };
+	for (size_t i = 0; i < 3; i++) {
+		const struct gz_hatch_stroke *last = &strokes->strokes[counts[i]];
+		/* the mean distance of so much length on so much area */
+		const double mean = strokes->area_mm2 / (double)last->before_mm;
+		const double least = least_distance(strokes, counts[i]);
+		if (least < 0.3 * mean)
+			fail_msg("the first %zu strokes: %.2f mm apart, mean %.2f", counts[i],
+				 least, mean);
+	}
+}
+
+static void stroke_knows_the_length_before_it(void **state)
+{
+	(void)state;
+	const struct gz_hatch_strokes *strokes = &strokes_of[DRAWN_BOARD];
+	double sum = 0;
+	for (size_t i = 0; i < strokes->stroke_count; i++) {
+		const struct gz_hatch_stroke *stroke = &strokes->strokes[i];
+		assert_float_equal(stroke->before_mm, sum, 1e-3 * sum + 1e-3);
+		for (uint32_t k = 1; k < stroke->count; k++) {
+			const struct gz_hatch_node *to = &strokes->nodes[stroke->first + k];
+			sum += hypot((double)to->place[0] - (double)to[-1].place[0],
+				     (double)to->place[1] - (double)to[-1].place[1]);
+		}
+		sum -= GZ_HATCH_POINTED * DISTANCE_MM;
+	}
+	assert_float_equal(strokes->length_mm, sum, 1e-3 * sum);
+}
+
+static struct gz_hatch_lines lines_of(enum drawn_body body, const struct drawn_picture *picture,
+				      struct gz_workers *workers)
+{
+	struct gz_hatch_lines lines = { 0 };
+	assert_int_equal(
+		gz_hatch_choose(&strokes_of[body], &picture->view, GZ_HATCH_ONLY, workers, &lines),
+		GZ_OK);
+	return lines;
+}
+
+static double mean_of_sheet(const struct gz_stipple_sheet *sheet, const int from[2],
+			    const int to[2])
+{
+	double sum = 0;
+	for (int y = from[1]; y < to[1]; y++)
+		for (int x = from[0]; x < to[0]; x++)
+			sum += sheet->ink[(size_t)y * sheet->stride + (size_t)x];
+	return sum / 255 / (to[0] - from[0]) / (to[1] - from[1]);
+}
+
+static double mean_drawn(enum drawn_body body, const struct drawn_picture *picture,
+			 const int from[2], const int to[2])
+{
+	struct gz_stipple_sheet sheet = { 0 };
+	struct gz_hatch_lines lines = lines_of(body, picture, NULL);
+	assert_int_equal(gz_stipple_sheet_clear(&sheet, EDGE, EDGE), GZ_OK);
+	assert_int_equal(gz_stipple_sheet_add_pieces(&sheet, lines.pieces, lines.count, NULL),
+			 GZ_OK);
+	const double mean = mean_of_sheet(&sheet, from, to);
+	gz_stipple_sheet_free(&sheet);
+	gz_hatch_lines_free(&lines);
+	return mean;
+}
+
+static void check_tones(double width, double height, double tilt_deg)
+{
+	struct drawn_picture picture = { 0 };
+	const struct gz_camera camera = drawn_camera(GZ_PROJECTION_ORTHOGRAPHIC, height, tilt_deg);
+	for (int step = 1; step < 10; step++) {
+		const float ink = (float)step / 10;
+		drawn_picture_make(DRAWN_BOARD, &camera, EDGE, 1 - ink, &picture);
+		picture.view.size_px = width;
+		const double drawn = mean_drawn(DRAWN_BOARD, &picture, (const int[2]) { 60, 60 },
+						(const int[2]) { EDGE - 60, EDGE - 60 });
+		if (fabs(drawn - (double)ink) > 0.05)
+			fail_msg("width %g, tilt %g: ink %.3f instead of %.1f", width, tilt_deg,
+				 drawn, (double)ink);
+	}
+	drawn_picture_free(&picture);
+}
+
+static void hatching_is_as_dark_as_the_shading_map(void **state)
+{
+	(void)state;
+	check_tones(1.5, 60, 0);
+	check_tones(2.5, 100, 0);
+}
+
+static void slanted_hatching_is_as_dark_as_the_shading_map(void **state)
+{
+	(void)state;
+	check_tones(2, 80, 50);
+}
+
+static void close_view_with_too_few_strokes_keeps_its_tone(void **state)
+{
+	(void)state;
+	check_tones(1, 60, 0);
+}
+
+static void crossed_layers_together_have_all_the_ink(void **state)
+{
+	(void)state;
+	for (int step = 0; step <= 100; step++) {
+		const float ink = (float)step / 100;
+		const float first = gz_hatch_layer_ink(GZ_HATCH_FIRST, ink);
+		const float cross = gz_hatch_layer_ink(GZ_HATCH_CROSS, ink);
+		assert_true(first >= 0 && first <= 1 && cross >= 0 && cross <= 1);
+		assert_float_equal(1 - (1 - first) * (1 - cross), ink, 1e-6);
+		assert_float_equal(gz_hatch_layer_ink(GZ_HATCH_ONLY, ink), ink, 0);
+	}
+	assert_float_equal(gz_hatch_layer_ink(GZ_HATCH_CROSS, 0.3F), 0, 0);
+}
+
+/* Which strokes of the board's middle show. */
+static void mark_strokes(const struct drawn_picture *picture, bool *shown)
+{
+	const struct gz_hatch_strokes *strokes = &strokes_of[DRAWN_BOARD];
+	struct gz_hatch_lines lines = { 0 };
+	for (size_t i = 0; i < strokes->stroke_count; i++) {
+		const struct gz_hatch_stroke *stroke = &strokes->strokes[i];
+		const float *middle = strokes->nodes[stroke->first + stroke->count / 2].place;
+		shown[i] = false;
+		if (fabsf(middle[0]) > 40 || fabsf(middle[1]) > 40)
+			continue; /* ends at the border of the board, where pixels beside it hide it
+				   */
+		/* a set of this stroke alone, whose order is that of all */
+		struct gz_hatch_strokes one = *strokes;
+		one.strokes = &strokes->strokes[i];
+		one.stroke_count = 1;
+		lines.count = 0;
+		assert_int_equal(gz_hatch_choose(&one, &picture->view, GZ_HATCH_ONLY, NULL, &lines),
+				 GZ_OK);
+		shown[i] = lines.count > 0;
+	}
+	gz_hatch_lines_free(&lines);
+}
+
+static void zoom_only_adds_strokes(void **state)
+{
+	(void)state;
+	enum { STEPS = 8 };
+	enum { STROKES_MAX = 20000 };
+	static bool before[STROKES_MAX], after[STROKES_MAX];
+	const size_t count = strokes_of[DRAWN_BOARD].stroke_count;
+	assert_in_range(count, 100, STROKES_MAX);
+	struct drawn_picture picture = { 0 };
+	size_t first = 0, last = 0;
+	for (int step = 0; step <= STEPS; step++) {
+		const struct gz_camera camera =
+			drawn_camera(GZ_PROJECTION_ORTHOGRAPHIC, 200 - 10 * step, 0);
+		drawn_picture_make(DRAWN_BOARD, &camera, EDGE, 0.6F, &picture);
+		mark_strokes(&picture, after);
+		last = 0;
+		for (size_t i = 0; i < count; i++) {
+			assert_true(after[i] || !before[i]);
+			last += after[i];
+		}
+		first = step == 0 ? last : first;
+		memcpy(before, after, count);
+	}
+	assert_true(first > 20 && last > 2 * first);
+	drawn_picture_free(&picture);
+}
+
+static void hidden_strokes_do_not_shine_through(void **state)
+{
+	(void)state;
+	struct drawn_picture picture = { 0 };
+	const struct gz_camera camera = drawn_camera(GZ_PROJECTION_ORTHOGRAPHIC, 100, 0);
+	drawn_picture_make(DRAWN_BOARD, &camera, EDGE, 0.3F, &picture);
+	for (int y = 50; y < 150; y++)
+		for (int x = 50; x < 150; x++)
+			drawn_set_value(&picture.depth, x, y,
+					gz_plane_value(&picture.depth, x, y) - 0.015F);
+	const double within = mean_drawn(DRAWN_BOARD, &picture, (const int[2]) { 53, 53 },
+					 (const int[2]) { 147, 147 });
+	assert_float_equal(within, 0, 0);
+	drawn_picture_free(&picture);
+}
+
+static void hatching_is_the_same_for_any_number_of_threads(void **state)
+{
+	(void)state;
+	struct drawn_picture picture = { 0 };
+	struct gz_workers *workers;
+	const struct gz_camera camera = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 150, 10);
+	drawn_picture_make(DRAWN_BALL, &camera, EDGE, 0.3F, &picture);
+	assert_int_equal(gz_workers_create(3, &workers), GZ_OK);
+	struct gz_hatch_lines alone = lines_of(DRAWN_BALL, &picture, NULL);
+	struct gz_hatch_lines shared = lines_of(DRAWN_BALL, &picture, workers);
+	assert_true(alone.count > 1000);
+	assert_int_equal(alone.count, shared.count);
+	assert_memory_equal(alone.pieces, shared.pieces, alone.count * sizeof *alone.pieces);
+	gz_workers_destroy(&workers);
+	gz_hatch_lines_free(&alone);
+	gz_hatch_lines_free(&shared);
+	drawn_picture_free(&picture);
+}
+
+static void directions_of_a_tube_run_along_it(void **state)
+{
+	(void)state;
+	/* Curvatures of a tube along y, and none at every third vertex: its neighbours know. */
+	const struct gz_mesh *mesh = &meshes[DRAWN_BOARD];
+	struct gz_curvature *curvatures = calloc(mesh->vertex_count, sizeof *curvatures);
+	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
+	assert_true(curvatures && directions);
+	for (size_t i = 0; i < mesh->vertex_count; i++)
+		if (i % 3)
+			curvatures[i] = (struct gz_curvature) { 0.5F, 0, { i % 2 ? 1 : -1, 0, 0 } };
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 10, directions), GZ_OK);
+	for (size_t i = 0; i < mesh->vertex_count; i++)
+		assert_float_equal(fabsf(directions[i][1]), 1, 1e-4);
+	gz_hatch_cross_directions(mesh, (const float(*)[3])directions, directions);
+	for (size_t i = 0; i < mesh->vertex_count; i++)
+		assert_float_equal(fabsf(directions[i][0]), 1, 1e-4);
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, -1, directions), GZ_ERR_INVAL);
+	free(curvatures);
+	free(directions);
+}
+
+static void mesh_without_directions_has_no_strokes(void **state)
+{
+	(void)state;
+	const struct gz_mesh *mesh = &meshes[DRAWN_BOARD];
+	struct gz_mesh_points points;
+	struct gz_hatch_strokes strokes;
+	float(*directions)[3] = calloc(mesh->vertex_count, sizeof *directions);
+	assert_non_null(directions);
+	assert_int_equal(gz_mesh_points_make(mesh, 100, NULL, &points), GZ_OK);
+	directions[0][0] = NAN;
+	assert_int_equal(
+		gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 5, &strokes),
+		GZ_OK);
+	assert_int_equal(strokes.stroke_count, 0);
+	gz_hatch_strokes_free(&strokes);
+	assert_int_equal(
+		gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 0, &strokes),
+		GZ_ERR_INVAL);
+	gz_mesh_points_free(&points);
+	free(directions);
+}
+
+TEST_SUITE(hatch)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(strokes_follow_their_directions_on_the_surface),
+		cmocka_unit_test(nodes_of_a_stroke_follow_each_other),
+		cmocka_unit_test(any_beginning_of_the_strokes_lies_evenly),
+		cmocka_unit_test(stroke_knows_the_length_before_it),
+		cmocka_unit_test(hatching_is_as_dark_as_the_shading_map),
+		cmocka_unit_test(slanted_hatching_is_as_dark_as_the_shading_map),
+		cmocka_unit_test(close_view_with_too_few_strokes_keeps_its_tone),
+		cmocka_unit_test(crossed_layers_together_have_all_the_ink),
+		cmocka_unit_test(zoom_only_adds_strokes),
+		cmocka_unit_test(hidden_strokes_do_not_shine_through),
+		cmocka_unit_test(hatching_is_the_same_for_any_number_of_threads),
+		cmocka_unit_test(directions_of_a_tube_run_along_it),
+		cmocka_unit_test(mesh_without_directions_has_no_strokes),
+	};
+	return cmocka_run_group_tests(tests, make_strokes, free_strokes);
+}
