@@ -1,10 +1,12 @@
 #include "render/mesh/label_net.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/portable.h"
 #include "render/mesh/label_surfaces.h"
 #include "render/mesh/mesh.h"
 
@@ -341,23 +343,60 @@ void gz_label_net_free(struct gz_label_net *net)
 
 /* ---- smoothing ---- */
 
+/* The filter is a sum of Chebyshev polynomials T_n of 1 - K/2, where K takes from each vertex the
+ * mean of its neighbours: Taubin, Zhang and Golub, "Optimal surface smoothing as filter design",
+ * ECCV 1996. A wave for which K is k = 2 - 2 cos(a) is multiplied by the sum of weights cos(n a):
+ * 1 below an angle, 0 above it, smoothed by a window. */
+enum { DEGREE_MAX = 2 * GZ_LABEL_SMOOTHING_MAX };
+
+/* Half the width of the step that Blackman's window makes is 6 pi by 2 degree + 1 (Harris, "On the
+ * use of windows for harmonic analysis with the discrete Fourier transform", 1978). The step lies
+ * so far from 0, and by KEPT_ANGLE more: the angle of a ball of 36 voxels, which keeps its size. */
+#define WINDOW_HALF_WIDTH (6 * PI)
+#define KEPT_ANGLE        0.04
+#define PI                3.14159265358979323846
+
+struct label_filter {
+	int degree;
+	double weights[DEGREE_MAX + 1];
+};
+
+static struct label_filter make_filter(int pairs)
+{
+	struct label_filter filter = { .degree = 2 * pairs };
+	double *const weights = filter.weights;
+	double sum = 0;
+	const double step = fmin(PI, WINDOW_HALF_WIDTH / (2 * filter.degree + 1) + KEPT_ANGLE);
+	for (int n = 0; n <= filter.degree; n++) {
+		const double turn = n * PI / (filter.degree + 1);
+		const double window =
+			0.42 + 0.5 * gz_portable_cos(turn) + 0.08 * gz_portable_cos(2 * turn);
+		weights[n] =
+			window * (n == 0 ? step / PI : 2 * gz_portable_sin(n * step) / (n * PI));
+		sum += weights[n];
+	}
+	for (int n = 0; n <= filter.degree; n++)
+		weights[n] /= sum;
+	return filter;
+}
+
+/* One step: the next polynomial of all places from the two before it. In doubles, as the terms of
+ * the sum are large and cancel. */
 struct smoothing {
 	const struct gz_label_net *net;
 	const int *dims;
-	const float (*from)[3];
-	float (*to)[3];
-	float factor;
+	const double (*from)[3]; /* the polynomial before */
+	double (*to)[3];         /* the one before that, which the next one replaces */
+	double (*sum)[3];
+	double weight; /* of the next one in the sum */
+	bool first;    /* the next one is T_1 */
 };
 
-static float kept_within(float value, float least, float greatest)
-{
-	return value < least ? least : value > greatest ? greatest : value;
-}
-
-static void smooth_vertex(const struct smoothing *smoothing, size_t vertex)
+/* How far the mean of a vertex's neighbours lies from it. On a side of the box it stays there. */
+static void mean_apart(const struct smoothing *smoothing, size_t vertex, double out[3])
 {
 	const struct gz_label_net *net = smoothing->net;
-	float sum[3] = { 0, 0, 0 };
+	double sum[3] = { 0, 0, 0 };
 	int count = 0;
 	for (int side = 0; side < 6; side++) {
 		const uint32_t other = net->neighbours[vertex][side];
@@ -367,15 +406,10 @@ static void smooth_vertex(const struct smoothing *smoothing, size_t vertex)
 		for (int axis = 0; axis < 3; axis++)
 			sum[axis] += smoothing->from[other][axis];
 	}
-	for (int axis = 0; axis < 3; axis++) {
-		const float old = smoothing->from[vertex][axis];
-		const float corner = (float)net->corners[vertex][axis];
-		const float moved = old + smoothing->factor * (sum[axis] / (float)count - old);
-		smoothing->to[vertex][axis] =
-			on_side(net->corners[vertex], smoothing->dims, axis)
-				? corner
-				: kept_within(moved, corner - 0.5F, corner + 0.5F);
-	}
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = on_side(net->corners[vertex], smoothing->dims, axis)
+				    ? 0
+				    : sum[axis] / count - smoothing->from[vertex][axis];
 }
 
 static void smooth_part(void *user, size_t part, int worker)
@@ -383,26 +417,81 @@ static void smooth_part(void *user, size_t part, int worker)
 	const struct smoothing *smoothing = user;
 	const size_t first = part * VERTICES_A_PART, end = first + VERTICES_A_PART;
 	(void)worker;
-	for (size_t i = first; i < end && i < smoothing->net->vertex_count; i++)
-		smooth_vertex(smoothing, i);
+	for (size_t i = first; i < end && i < smoothing->net->vertex_count; i++) {
+		double apart[3];
+		mean_apart(smoothing, i, apart);
+		for (int axis = 0; axis < 3; axis++) {
+			const double old = smoothing->from[i][axis];
+			const double next =
+				smoothing->first ? old + 0.5 * apart[axis]
+						 : 2 * old + apart[axis] - smoothing->to[i][axis];
+			smoothing->to[i][axis] = next;
+			smoothing->sum[i][axis] += smoothing->weight * next;
+		}
+	}
 }
 
-enum gz_result gz_label_net_smooth(struct gz_label_net *net, const int dims[3], int pairs,
-				   struct gz_workers *workers)
+static double kept_within(double value, double least, double greatest)
+{
+	return value < least ? least : value > greatest ? greatest : value;
+}
+
+/* The smoothed places, but none farther from its corner than the reach. */
+static void take_places(struct gz_label_net *net, const int dims[3], const double (*sum)[3],
+			double reach)
+{
+	for (size_t i = 0; i < net->vertex_count; i++)
+		for (int axis = 0; axis < 3; axis++) {
+			const double corner = net->corners[i][axis];
+			net->places[i][axis] =
+				on_side(net->corners[i], dims, axis)
+					? (float)corner
+					: (float)kept_within(sum[i][axis], corner - reach,
+							     corner + reach);
+		}
+}
+
+static void apply_filter(struct gz_label_net *net, const int dims[3],
+			 const struct label_filter *filter, struct gz_workers *workers,
+			 double (*places[3])[3])
 {
 	const size_t parts = (net->vertex_count + VERTICES_A_PART - 1) / VERTICES_A_PART;
-	float(*other)[3] = malloc((net->vertex_count + 1) * sizeof *other);
-	if (!other)
-		return GZ_ERR_NO_MEM;
-	for (int pair = 0; pair < pairs; pair++) {
-		struct smoothing smoothing = { net, dims, (const float(*)[3])net->places, other,
-					       GZ_LABEL_SHRINK };
+	double(*now)[3] = places[0], (*before)[3] = places[1], (*sum)[3] = places[2];
+	for (size_t i = 0; i < net->vertex_count; i++)
+		for (int axis = 0; axis < 3; axis++) {
+			now[i][axis] = (double)net->places[i][axis];
+			sum[i][axis] = filter->weights[0] * now[i][axis];
+		}
+	for (int n = 1; n <= filter->degree; n++) {
+		struct smoothing smoothing = {
+			.net = net,
+			.dims = dims,
+			.from = (const double(*)[3])now,
+			.to = before,
+			.sum = sum,
+			.weight = filter->weights[n],
+			.first = n == 1,
+		};
 		gz_label_run(workers, smooth_part, &smoothing, parts);
-		smoothing.from = (const float(*)[3])other;
-		smoothing.to = net->places;
-		smoothing.factor = GZ_LABEL_SWELL;
-		gz_label_run(workers, smooth_part, &smoothing, parts);
+		double(*const made)[3] = before;
+		before = now;
+		now = made;
 	}
-	free(other);
+}
+
+enum gz_result gz_label_net_smooth(struct gz_label_net *net, const int dims[3],
+				   const struct gz_label_look *look, struct gz_workers *workers)
+{
+	if (look->smoothing == 0)
+		return GZ_OK;
+	const size_t count = net->vertex_count + 1;
+	double(*room)[3] = malloc(3 * count * sizeof *room);
+	if (!room)
+		return GZ_ERR_NO_MEM;
+	double(*places[3])[3] = { room, room + count, room + 2 * count };
+	const struct label_filter filter = make_filter(look->smoothing);
+	apply_filter(net, dims, &filter, workers, places);
+	take_places(net, dims, (const double(*)[3])places[2], look->reach);
+	free(room);
 	return GZ_OK;
 }

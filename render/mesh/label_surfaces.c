@@ -17,11 +17,20 @@ const struct gz_option gz_label_options[] = {
 	{ "labels.smoothing", GZ_OPTION_INT, offsetof(struct gz_label_look, smoothing), 0,
 	  GZ_LABEL_SMOOTHING_MAX, .preset = "12",
 	  .help = "surfaces of labels: pairs of smoothing steps; 0 = stairs" },
+	{ "labels.reach", GZ_OPTION_DOUBLE, offsetof(struct gz_label_look, reach), 0,
+	  GZ_LABEL_REACH_MAX, .preset = "0.5",
+	  .help = "surfaces of labels: how far smoothing moves them along an axis, voxels" },
 	{ "labels.names", GZ_OPTION_STRING, offsetof(struct gz_label_look, names),
 	  .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "file with names and colours of labels; without it the one beside the volume" },
 };
 const size_t gz_label_option_count = sizeof gz_label_options / sizeof gz_label_options[0];
+
+bool gz_label_look_same(const struct gz_label_look *a, const struct gz_label_look *b)
+{
+	return a->smoothing == b->smoothing && a->reach == b->reach &&
+	       strcmp(a->names, b->names) == 0;
+}
 
 /* ---- colours ---- */
 
@@ -331,7 +340,7 @@ static enum gz_result make_surfaces(const struct gz_label_request *request,
 	const uint64_t most = gz_mesh_count_limit(request->elements_max);
 	enum gz_result result = gz_label_net_make(index, most, workers, log, &net);
 	if (result == GZ_OK)
-		result = gz_label_net_smooth(&net, index->dims, request->smoothing, workers);
+		result = gz_label_net_smooth(&net, index->dims, request->look, workers);
 	if (result == GZ_OK) {
 		struct splitting splitting = { .index = index,
 					       .net = &net,

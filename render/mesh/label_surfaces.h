@@ -10,12 +10,12 @@
  * no gap. What lies outside of the volume is no label, so every surface is closed.
  *
  * A vertex begins at the mean of the middles of those edges between the eight voxel centres round
- * it whose ends differ. Then it is smoothed as Taubin does ("A signal processing approach to fair
- * surface design", SIGGRAPH 1995): steps of GZ_LABEL_SHRINK and GZ_LABEL_SWELL of the way to the
- * mean of its neighbours along edges in turn, which flatten stairs and keep volumes. It never
- * leaves the cube of a voxel's size round its corner, so that no surface is farther than half a
- * voxel, along each axis, from where the labels change, and thin things stay. On the sides of the
- * volume's box vertices move within them.
+ * it whose ends differ. Then all are smoothed by a filter that removes short waves and keeps long
+ * ones, and with them volumes (Taubin, Zhang and Golub, "Optimal surface smoothing as filter
+ * design", ECCV 1996): a polynomial in the step from each vertex to the mean of its neighbours
+ * along edges. The more steps, the longer the waves that it removes. No vertex ends farther from
+ * its corner of voxels than the reach along an axis. On the sides of the volume's box vertices move
+ * within them.
  *
  * Where voxels of one label touch along an edge or at a corner only, its surface touches itself
  * there. The same meshes, bits and order, for any number of threads.
@@ -23,6 +23,7 @@
 #ifndef GZ_RENDER_MESH_LABEL_SURFACES_H
 #define GZ_RENDER_MESH_LABEL_SURFACES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -35,19 +36,23 @@
 #include "render/mesh/label_names.h"
 #include "render/mesh/mesh.h"
 
-/** Taubin's two factors: his example, whose pass band ends at 1 / .5 - 1 / .53 = .11. */
-#define GZ_LABEL_SHRINK 0.5F
-#define GZ_LABEL_SWELL  (-0.53F)
-
-/** Most pairs of smoothing steps. Chosen: up to these a ball of 18 voxels keeps its volume within
+/** Most pairs of smoothing steps. Chosen: up to these a ball of 36 voxels keeps its volume within
  * half a hundredth. */
 #define GZ_LABEL_SMOOTHING_MAX 60
+
+/** Farthest reach, voxels. Chosen: steps of atlases that were drawn on a coarser grid are two to
+ * four voxels high. */
+#define GZ_LABEL_REACH_MAX 4
 
 /** How surfaces of labels are made. */
 struct gz_label_look {
 	int smoothing;            /**< pairs of smoothing steps; 0 = stairs with blunt edges */
+	double reach;             /**< how far smoothing moves a vertex along an axis, voxels */
 	char names[GZ_PATH_SIZE]; /**< file of names and colours; empty: one beside the volume */
 };
+
+/** Whether two are the same. */
+bool gz_label_look_same(const struct gz_label_look *a, const struct gz_label_look *b);
 
 /** Table over struct gz_label_look: "labels.…". */
 extern const struct gz_option gz_label_options[];
@@ -73,7 +78,7 @@ struct gz_label_surfaces {
 struct gz_label_request {
 	const struct gz_volume *volume;
 	const char *name;                   /**< the volume's in messages */
-	int smoothing;                      /**< as in struct gz_label_look */
+	const struct gz_label_look *look;   /**< its names are not read */
 	const struct gz_label_names *names; /**< NULL: none */
 	/** Most vertices and faces of all labels, and most triangles of one; 0 or more than
 	 *  GZ_MESH_COUNT_MAX: that many. */

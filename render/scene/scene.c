@@ -100,14 +100,19 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 			      out_volume);
 }
 
+void gz_scene_free_labels(const struct gz_scene *scene, struct gz_label_surfaces *labels)
+{
+	for (size_t i = 0; labels && i < scene->settings.objects.count; i++)
+		gz_label_surfaces_free(&labels[i]);
+	free(labels);
+}
+
 static void free_meshes(struct gz_scene *scene)
 {
 	for (size_t i = 0; scene->meshes && i < scene->settings.objects.count; i++)
 		gz_mesh_free(&scene->meshes[i]);
-	for (size_t i = 0; scene->labels && i < scene->settings.objects.count; i++)
-		gz_label_surfaces_free(&scene->labels[i]);
 	free(scene->meshes);
-	free(scene->labels);
+	gz_scene_free_labels(scene, scene->labels);
 	scene->meshes = NULL;
 	scene->labels = NULL;
 }
@@ -202,7 +207,7 @@ static enum gz_result load_labels_of(const struct scene_loader *loader,
 	const struct gz_label_request request = {
 		.volume = &volume,
 		.name = object->labels,
-		.smoothing = loader->settings->labels.smoothing,
+		.look = &loader->settings->labels,
 		.names = &names,
 	};
 	const int64_t start_ns = gz_clock_now_ns();
@@ -299,7 +304,6 @@ static enum gz_result make_empty_space(const struct scene_loader *loader, struct
 	struct mesh_box box = { { INFINITY, INFINITY, INFINITY },
 				{ -INFINITY, -INFINITY, -INFINITY } };
 	const double *least = box.least, *greatest = box.greatest;
-	double centre[3];
 	struct gz_volume *volume = &scene->volume;
 	each_mesh(scene, add_to_box, &box);
 	if (!(greatest[0] > least[0] || greatest[1] > least[1] || greatest[2] > least[2])) {
@@ -319,8 +323,27 @@ static enum gz_result make_empty_space(const struct scene_loader *loader, struct
 	memset(volume->voxels, 0, gz_volume_voxel_count(volume));
 	gz_volume_find_range(volume);
 	for (int axis = 0; axis < 3; axis++)
-		centre[axis] = 0.5 * (least[axis] + greatest[axis]);
-	each_mesh(scene, move_to_centre, centre);
+		scene->centre[axis] = 0.5 * (least[axis] + greatest[axis]);
+	each_mesh(scene, move_to_centre, scene->centre);
+	return GZ_OK;
+}
+
+enum gz_result gz_scene_remake_labels(struct gz_scene *scene, const char *name,
+				      const struct gz_label_look *look, const struct gz_log *log,
+				      struct gz_label_surfaces **out_before)
+{
+	struct gz_scene made = { .settings = scene->settings };
+	const struct scene_loader loader = { .name = name, .log = log, .settings = &made.settings };
+	made.settings.labels = *look;
+	const enum gz_result result = load_labels(&loader, &made);
+	if (result != GZ_OK) {
+		gz_scene_free_labels(scene, made.labels);
+		return result;
+	}
+	each_mesh(&made, move_to_centre, scene->centre);
+	*out_before = scene->labels;
+	scene->labels = made.labels;
+	scene->settings.labels = *look;
 	return GZ_OK;
 }
 

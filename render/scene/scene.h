@@ -27,6 +27,8 @@ struct gz_scene {
 	struct gz_mesh *meshes;
 	/** Likewise the surfaces of labels. NULL: no object has labels. */
 	struct gz_label_surfaces *labels;
+	/** What became the origin of all meshes and labels of a scene without a volume, mm. */
+	double centre[3];
 };
 
 /** Most objects that gz_scene_list_objects() lists: the volume, those of the settings and labels.
@@ -155,6 +157,22 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
 /** The number of an object that is a label: 256 times 1 + its place among the labels of its object,
  *  plus 2 and the place of that object among the settings'. So the lowest byte tells the object. */
 uint32_t gz_scene_label_id(size_t object, size_t label);
+
+/**
+ * Make the surfaces of a scene's labels again, with another look. The world stays as it is.
+ *
+ * @param name  path beside which the scene's files are searched first
+ * @param[in,out] scene  loaded; changed on GZ_OK
+ * @param[out] out_before  the surfaces until now, written on GZ_OK; the caller frees them with
+ *                         gz_scene_free_labels(). NULL: the scene has no labels
+ * @return what gz_scene_load() returns; logged
+ */
+enum gz_result gz_scene_remake_labels(struct gz_scene *scene, const char *name,
+				      const struct gz_label_look *look, const struct gz_log *log,
+				      struct gz_label_surfaces **out_before);
+
+/** Free the surfaces of the labels of each of a scene's objects. Accepts NULL. */
+void gz_scene_free_labels(const struct gz_scene *scene, struct gz_label_surfaces *labels);
 
 /** The label with a number of gz_scene_label_id(); NULL: the object is none. Borrowed. */
 const struct gz_label_surface *gz_scene_label_of(const struct gz_scene *scene, uint32_t id);

@@ -41,9 +41,10 @@ static struct gz_label_surfaces make_surfaces_of(const struct gz_volume *volume,
 {
 	struct gz_label_surfaces surfaces;
 	struct gz_workers *workers = NULL;
+	const struct gz_label_look look = { .smoothing = smoothing, .reach = 0.5 };
 	const struct gz_label_request request = { .volume = volume,
 						  .name = "labels",
-						  .smoothing = smoothing };
+						  .look = &look };
 	if (threads > 0)
 		assert_int_equal(gz_workers_create(threads, &workers), GZ_OK);
 	assert_int_equal(gz_label_surfaces_make(&request, workers, NULL, &surfaces), GZ_OK);
@@ -144,6 +145,49 @@ static void smoothing_flattens_the_stairs_of_a_ball(void **state)
 	if (!(mean[1] < 0.7 * mean[0] && fabs(area[1] / sphere - 1) < 0.02))
 		fail_msg("normals off by %g before and %g after, area %g of %g", mean[0], mean[1],
 			 area[1], sphere);
+	gz_volume_free(&volume);
+}
+
+/* Terraces two voxels high and eight long, as a slope has that was drawn on a coarser grid. */
+static double terraces(int x, int y, int z)
+{
+	(void)y;
+	return z < 12 + 2 * (x / 8) ? 1 : 0;
+}
+
+/* The greatest angle between the normals of the slope and its own, degrees, away from the sides. */
+static double steepest_on_terraces(const struct gz_volume *volume, int smoothing, double reach)
+{
+	const struct gz_label_look look = { .smoothing = smoothing, .reach = reach };
+	const struct gz_label_request request = { .volume = volume,
+						  .name = "labels",
+						  .look = &look };
+	struct gz_label_surfaces surfaces;
+	double greatest = 0;
+	assert_int_equal(gz_label_surfaces_make(&request, NULL, NULL, &surfaces), GZ_OK);
+	const struct gz_mesh *mesh = &surfaces.items[0].mesh;
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		const float *at = mesh->positions[v], *normal = mesh->normals[v];
+		/* rises by 2 in 8 voxels */
+		const double along = ((double)normal[2] * 4 - (double)normal[0]) / sqrt(17);
+		if (fabs((double)at[0]) < 8 && fabs((double)at[1]) < 8 && (double)at[2] > -20)
+			greatest = fmax(greatest, acos(fmin(along, 1)) * 57.29578);
+	}
+	gz_label_surfaces_free(&surfaces);
+	return greatest;
+}
+
+static void smoothing_with_enough_reach_flattens_terraces(void **state)
+{
+	(void)state;
+	struct gz_volume volume = make_labels(48, GZ_VOXEL_U8, terraces);
+	const double stairs = steepest_on_terraces(&volume, 0, 0.5);
+	const double held = steepest_on_terraces(&volume, 30, 0.5);
+	const double flat = steepest_on_terraces(&volume, 30, 1.5);
+	if (!(stairs > 25 && held < stairs && flat < 4 && flat < 0.5 * held))
+		fail_msg("stairs %.1f, held %.1f, flat %.1f degrees", stairs, held, flat);
+	/* Without reach vertices go to the corners of voxels. */
+	assert_true(steepest_on_terraces(&volume, 30, 0) > 25);
 	gz_volume_free(&volume);
 }
 
@@ -355,8 +399,9 @@ static enum gz_result try_labels_up_to(uint64_t elements_max, enum gz_voxel_type
 				       label_formula *formula, struct gz_label_surfaces *out)
 {
 	struct gz_volume volume = make_labels(12, type, formula);
+	const struct gz_label_look look = { .smoothing = 10, .reach = 0.5 };
 	const struct gz_label_request request = {
-		.volume = &volume, .name = "labels", .smoothing = 10, .elements_max = elements_max
+		.volume = &volume, .name = "labels", .look = &look, .elements_max = elements_max
 	};
 	captured_log_init(&said, "*:info");
 	const enum gz_result result = gz_label_surfaces_make(&request, NULL, &said.log, out);
@@ -462,6 +507,7 @@ TEST_SUITE(label_surfaces)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ball_keeps_its_volume_and_is_one_closed_surface),
 		cmocka_unit_test(smoothing_flattens_the_stairs_of_a_ball),
+		cmocka_unit_test(smoothing_with_enough_reach_flattens_terraces),
 		cmocka_unit_test(ring_has_one_handle),
 		cmocka_unit_test(neighbours_share_their_faces_with_opposite_orientation),
 		cmocka_unit_test(labels_that_fill_the_volume_fill_its_box),

@@ -1,6 +1,7 @@
 /* Scenes that show labels, each with a surface and a colour of its own. */
 #include "suite.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -108,6 +109,47 @@ static void names_of_a_file_are_those_of_objects(void **state)
 	assert_null(scene.labels[0].items[0].name[0] ? "named" : NULL);
 	gz_scene_free(&scene);
 	remove(files_write("l.txt", "", 0));
+}
+
+/* The farthest place from the middle. */
+static double farthest(const struct gz_scene *scene)
+{
+	const struct gz_mesh *mesh = &scene->labels[0].items[0].mesh;
+	double most = 0;
+	for (size_t v = 0; v < mesh->vertex_count; v++)
+		for (int axis = 0; axis < 3; axis++)
+			most = fmax(most, fabs((double)mesh->positions[v][axis]));
+	return most;
+}
+
+static void labels_are_made_again_with_another_look(void **state)
+{
+	(void)state;
+	static const char text[] = BLOCKS "[labels]\nsmoothing = 0\n";
+	struct gz_scene scene = loaded(text);
+	const char *path = write_scene(text);
+	struct gz_label_look look = { .smoothing = 0, .reach = 0.5 };
+	const double spacing = scene.volume.spacing[0], before_mm = farthest(&scene);
+	struct gz_label_surfaces *before = NULL;
+	assert_int_equal(gz_scene_remake_labels(&scene, path, &look, NULL, &before), GZ_OK);
+	assert_ptr_not_equal(before, scene.labels);
+	gz_scene_free_labels(&scene, before);
+	assert_float_equal(farthest(&scene), before_mm, 0); /* about the same centre */
+	look.smoothing = 8;
+	assert_int_equal(gz_scene_remake_labels(&scene, path, &look, NULL, &before), GZ_OK);
+	gz_scene_free_labels(&scene, before);
+	assert_true(fabs(farthest(&scene) - before_mm) > 0.01);
+	assert_float_equal(scene.volume.spacing[0], spacing, 0);
+	assert_int_equal(scene.settings.labels.smoothing, 8);
+	/* What cannot be made changes nothing. */
+	const struct gz_label_surfaces *kept = scene.labels;
+	snprintf(look.names, sizeof look.names, "nowhere");
+	assert_int_equal(gz_scene_remake_labels(&scene, path, &look, NULL, &before),
+			 GZ_ERR_NOT_FOUND);
+	assert_ptr_equal(scene.labels, kept);
+	assert_string_equal(scene.settings.labels.names, "");
+	gz_scene_free(&scene);
+	gz_scene_free_labels(&scene, NULL);
 }
 
 /* A picture of the scene by rays at surfaces; false without Embree. */
@@ -235,6 +277,7 @@ TEST_SUITE(scene_labels)
 		cmocka_unit_test(each_label_is_an_object_with_a_colour),
 		cmocka_unit_test(hidden_labels_and_those_beside_a_volume_are_listed_right),
 		cmocka_unit_test(names_of_a_file_are_those_of_objects),
+		cmocka_unit_test(labels_are_made_again_with_another_look),
 		cmocka_unit_test(labels_are_drawn_in_their_colours),
 		cmocka_unit_test(face_between_neighbours_has_the_colour_of_the_far_one),
 		cmocka_unit_test(volumes_that_are_no_labels_are_refused_by_name),

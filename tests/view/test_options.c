@@ -456,7 +456,6 @@ static void help_lists_all_options_and_scene_keys(void **state)
 			const char *key = tables[i].options[k].key;
 			bool taken = strncmp(key, "volume.", 7) != 0 &&
 				     strncmp(key, "transfer.", 9) != 0 &&
-				     strncmp(key, "labels.", 7) != 0 &&
 				     strncmp(key, "display.", 8) != 0;
 			for (size_t own = 0; own < gz_view_option_count; own++)
 				taken = taken || strcmp(key, gz_view_option_table[own].key) == 0;

@@ -269,6 +269,29 @@ enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 	return r;
 }
 
+enum gz_result gz_frame_set_labels(struct gz_frame_maker *maker, const struct gz_label_look *look)
+{
+	struct gz_scene *scene = &maker->scene;
+	const struct gz_label_look shown = scene->settings.labels;
+	struct gz_label_surfaces *before = NULL;
+	enum gz_result r = gz_scene_remake_labels(scene, maker->path, look, maker->log, &before);
+	if (r != GZ_OK)
+		return r;
+	maker->any_made = false;
+	r = maker->pictures ? show_scene_objects(maker) : GZ_OK;
+	if (r != GZ_OK) {
+		struct gz_label_surfaces *const refused = scene->labels;
+		gz_err(maker->log, "cannot show the labels: %s", gz_result_text(r));
+		scene->labels = before;
+		scene->settings.labels = shown;
+		before = refused;
+		(void)show_scene_objects(maker);
+	}
+	/* The renderer has let go of them. */
+	gz_scene_free_labels(scene, before);
+	return r;
+}
+
 int gz_frame_time_points(const struct gz_frame_maker *maker)
 {
 	const int points = maker->scene.volume.time_points;

@@ -109,6 +109,15 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer);
 
+/**
+ * Show the labels of the scene with another look from the next frame on. It takes longer than a
+ * frame. The surfaces of gz_frame_maker_scene() change: no thread may use them meanwhile. If it
+ * fails, the present ones stay.
+ *
+ * @return what gz_scene_remake_labels() and gz_picture_maker_show() return; logged
+ */
+enum gz_result gz_frame_set_labels(struct gz_frame_maker *maker, const struct gz_label_look *look);
+
 /** How many time points the scene's volume has; 1: it is not a series. */
 int gz_frame_time_points(const struct gz_frame_maker *maker);
 

@@ -8,9 +8,10 @@
 #include "render/surface/isosurface_technique.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
-	GZ_SCENE_CAMERA,    GZ_SCENE_IMAGE,       GZ_SCENE_RAYS,       GZ_SCENE_LIGHT,
-	GZ_SCENE_CLIP,      GZ_SCENE_ENVIRONMENT, GZ_SCENE_ISOSURFACE, GZ_SCENE_SLICES,
-	GZ_SCENE_FOVEATION, GZ_SCENE_ATTENTION,   GZ_SCENE_TEMPORAL,   GZ_SCENE_VIEW,
+	GZ_SCENE_CAMERA, GZ_SCENE_IMAGE,       GZ_SCENE_RAYS,       GZ_SCENE_LIGHT,
+	GZ_SCENE_CLIP,   GZ_SCENE_ENVIRONMENT, GZ_SCENE_ISOSURFACE, GZ_SCENE_SLICES,
+	GZ_SCENE_LABELS, GZ_SCENE_FOVEATION,   GZ_SCENE_ATTENTION,  GZ_SCENE_TEMPORAL,
+	GZ_SCENE_VIEW,
 };
 
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
@@ -61,6 +62,14 @@ static bool by_samples(const struct gz_scene_settings *settings)
 static bool by_isosurface(const struct gz_scene_settings *settings)
 {
 	return gz_scene_draws_by(settings, &gz_isosurface_technique);
+}
+
+static bool with_labels(const struct gz_scene_settings *settings)
+{
+	for (size_t i = 0; i < settings->objects.count; i++)
+		if (settings->objects.items[i].labels[0])
+			return true;
+	return false;
 }
 
 static bool by_glass(const struct gz_scene_settings *settings)
@@ -194,6 +203,7 @@ static const struct {
 	{ "environment.cube", in_every_scene },
 	{ "environment.up", with_a_zenith },
 	{ "environment.", under_the_sky },
+	{ "labels.", with_labels },
 	{ "slices.", by_slices },
 	{ "render.ray_sampling_rate", by_raycast },
 	{ "render.interpolation", by_samples },

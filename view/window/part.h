@@ -137,6 +137,7 @@ struct gz_window_part {
 	ROW(time)          /* shows the time points of a series */ \
 	ROW(replay)        /* shows a session again; behind all that change the gaze */ \
 	ROW(isovalue)      /* surfaces without triangles while they change; behind replay */ \
+	ROW(labels)        /* surfaces of labels with other settings */ \
 	ROW(session)       /* records sessions; behind all that change the gaze */ \
 	ROW(capture)       /* writes pictures and videos; behind all that paint */ \
 	ROW(basics)        /* methods, settings, cursor; behind all whose panels Escape closes */ \

@@ -111,21 +111,12 @@ static const struct gz_window_action time_actions[] = {
 	  .run = toggle_time_panel },
 };
 
-static bool parts_let_data_go(struct gz_window *window)
-{
-	bool all = true;
-	GZ_FOR_EACH_PART (part)
-		if ((*part)->data_leaving && !(*part)->data_leaving(window))
-			all = false;
-	return all;
-}
-
 /* Show the time point that was taken. */
 static void show_taken(struct gz_window *window)
 {
 	struct gz_window_time *self = window->time;
 	self->wanted = NONE;
-	if (!parts_let_data_go(window)) {
+	if (!gz_window_let_data_go(window)) {
 		gz_warn(window->log, "the time point stays while a session is recorded or shown");
 		stop_playing(window);
 		return;

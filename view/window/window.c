@@ -149,6 +149,15 @@ static bool take_back(struct gz_window *window)
 	return true;
 }
 
+bool gz_window_let_data_go(struct gz_window *window)
+{
+	bool all = true;
+	GZ_FOR_EACH_PART (part)
+		if ((*part)->data_leaving && !(*part)->data_leaving(window))
+			all = false;
+	return all;
+}
+
 static void draw_all_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	gz_widgets_begin();

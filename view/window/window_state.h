@@ -189,6 +189,10 @@ void gz_window_follow_cursor(struct gz_window *window);
 /** Draw panels for a few frames: something has happened that they may have to answer. */
 void gz_window_wake_panels(struct gz_window *window);
 
+/** Ask all parts to stop using the data of the scene, which are about to change. @return whether
+ * all let them go; if not, they stay */
+bool gz_window_let_data_go(struct gz_window *window);
+
 /* ---- basics.c ---- */
 
 /** Rows of the settings panel: the options of window->settings, with those grey that have no
