@@ -66,6 +66,15 @@ static const struct gz_option options[] = {
 	{ "network.keys", GZ_OPTION_STRING, AT(key_directory), 0, GZ_PATH_SIZE, 0, NULL, "",
 	  "directory of server_key and authorized_keys; empty: gazecast in the user's "
 	  "configuration directory, else in the system's" },
+	{ "network.open_clients", GZ_OPTION_INT, AT(open_clients), 8, 4096, 0, NULL, "256",
+	  "most clients of each TCP port without keys; the ports of the stream and of the latest "
+	  "gaze count as one" },
+	{ "network.trusted_clients", GZ_OPTION_INT, AT(trusted_clients), 8, 4096, 0, NULL, "1024",
+	  "the same for each local socket, and for each TCP port with keys" },
+	{ "network.trusted_topics", GZ_OPTION_INT, AT(trusted_topics), 256, 1048576, 0, NULL,
+	  "16384",
+	  "most bytes of topics that the daemon does not send to which all readers at the local "
+	  "socket, or all with keys, may subscribe; one may have a quarter of it" },
 	{ "daemon.user", GZ_OPTION_STRING, AT(user), 0, GZ_NAME_SIZE, 0, NULL, "",
 	  "user that the daemon becomes when root starts it; empty: keep the user that started "
 	  "it" },

@@ -62,6 +62,9 @@ struct gz_config {
 	char control[GZ_ENDPOINT_SIZE]; /**< as given; empty: see control_endpoint */
 	int stream_port, latest_port, inlet_port; /**< 0: the system chooses */
 	char key_directory[GZ_PATH_SIZE]; /**< empty: the user's, else the system's configuration */
+	int open_clients;                 /**< of a port without keys */
+	int trusted_clients;              /**< of a local socket, or of a port with keys */
+	int trusted_topics; /**< bytes of topics that the daemon does not send, of these readers */
 	char user[GZ_NAME_SIZE];  /**< user to become when root starts the daemon; empty: none */
 	char surfaces[256];       /**< names, separated by blanks */
 	bool viewers_still_scene; /**< a viewer may say that nothing moves in its scene */

@@ -41,7 +41,7 @@ struct visitor {
 struct gz_door {
 	enum gz_door_kind kind;
 	enum gz_door_place place;
-	const struct gz_door_limits *limits;
+	struct gz_door_limits limits;
 	uint32_t count;
 	int end; /* no visitor has had a descriptor from here on */
 	uint64_t arrivals;
@@ -73,21 +73,21 @@ static void leak_out(struct leak *leak, uint64_t per_s, int64_t now_ns)
 	leak->since_ns = now_ns;
 }
 
-const struct gz_door_limits *gz_door_limits_of(enum gz_door_place place)
+struct gz_door_limits gz_door_usual_limits(enum gz_door_place place)
 {
-	static const struct gz_door_limits open = { GZ_DOOR_CONNECTIONS, GZ_DOOR_STRANGE,
-						    GZ_DOOR_STRANGE_EACH, GZ_DOOR_READER_COST };
-	static const struct gz_door_limits trusted = {
-		GZ_DOOR_TRUSTED_CONNECTIONS,
-		GZ_DOOR_TRUSTED_STRANGE,
-		GZ_DOOR_TRUSTED_STRANGE_EACH,
-		GZ_DOOR_TRUSTED_READER_COST,
-	};
-	return place == GZ_DOOR_OPEN ? &open : &trusted;
+	if (place == GZ_DOOR_OPEN)
+		return (struct gz_door_limits) { .connections = GZ_DOOR_CONNECTIONS,
+						 .strange = GZ_DOOR_STRANGE,
+						 .strange_each = GZ_DOOR_STRANGE_EACH,
+						 .reader_cost = GZ_DOOR_READER_COST };
+	return (struct gz_door_limits) { .connections = GZ_DOOR_TRUSTED_CONNECTIONS,
+					 .strange = GZ_DOOR_TRUSTED_STRANGE,
+					 .strange_each = GZ_DOOR_TRUSTED_STRANGE_EACH,
+					 .reader_cost = GZ_DOOR_TRUSTED_READER_COST };
 }
 
 enum gz_result gz_door_create(enum gz_door_kind kind, enum gz_door_place place,
-			      struct gz_door **out_door)
+			      const struct gz_door_limits *limits, struct gz_door **out_door)
 {
 	/* Beginnings of what Pupil Capture sends are known too: its readers ask for them. */
 	static const char *const known[] = {
@@ -124,7 +124,7 @@ enum gz_result gz_door_create(enum gz_door_kind kind, enum gz_door_place place,
 		return GZ_ERR_NO_MEM;
 	door->kind = kind;
 	door->place = place;
-	door->limits = gz_door_limits_of(place);
+	door->limits = limits ? *limits : gz_door_usual_limits(place);
 	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
 		gz_door_know(door, known[i]);
 	*out_door = door;
@@ -248,10 +248,10 @@ static int least_useful(const struct gz_door *door, int64_t now_ns)
 /* @return whether there is room for one more */
 static bool make_room(struct gz_door *door, int64_t now_ns)
 {
-	if (door->count < door->limits->connections)
+	if (door->count < door->limits.connections)
 		return true;
 	sweep_visitors(door, now_ns);
-	if (door->count < door->limits->connections)
+	if (door->count < door->limits.connections)
 		return true;
 	if (door->full_ns == 0 || now_ns - door->full_ns > GZ_DOOR_CALM_MS * GZ_NS_PER_MS)
 		door->full_since_ns = now_ns;
@@ -344,7 +344,7 @@ static uint64_t shared_cost(const struct gz_door *door, const struct visitor *vi
 			    int64_t now_ns)
 {
 	int64_t age_s = (now_ns - visitor->arrived_ns) / GZ_NS_PER_S;
-	uint64_t own = door->limits->reader_cost +
+	uint64_t own = door->limits.reader_cost +
 		       (age_s > 0 ? (uint64_t)age_s * GZ_DOOR_READER_COST_PER_S : 0);
 	return visitor->cost > own ? visitor->cost - own : 0;
 }
@@ -355,13 +355,13 @@ static bool is_bearable(struct gz_door *door, const struct visitor *before, stru
 {
 	uint64_t strange = visitor->strange - before->strange;
 	uint64_t shared = shared_cost(door, visitor, now_ns);
-	if (visitor->strange > door->limits->strange_each)
+	if (visitor->strange > door->limits.strange_each)
 		return false;
 	if (is_sealed(door) && !visitor->useful)
 		return shared == 0;
 	leak_out(&door->settling, GZ_DOOR_STRANGE_PER_S, now_ns);
 	leak_out(&door->shared, GZ_DOOR_SHARED_COST_PER_S, now_ns);
-	const uint64_t most = door->limits->strange;
+	const uint64_t most = door->limits.strange;
 	if (strange > 0 && door->strange + door->settling.level + strange > most) {
 		sweep_visitors(door, now_ns);
 		if (door->strange + door->settling.level + strange > most)
@@ -400,7 +400,7 @@ static bool may_be_held(struct gz_door *door, struct visitor *visitor, uint64_t 
 	uint64_t own = visitor->own.level + held;
 	uint64_t all = atomic_load_explicit(&door->held, memory_order_relaxed) + held;
 	if (visitor->message > GZ_DOOR_MESSAGE_MAX ||
-	    visitor->unknown > door->limits->strange_each ||
+	    visitor->unknown > door->limits.strange_each ||
 	    (all > GZ_DOOR_HELD && own > GZ_DOOR_SENDER_BYTES))
 		return false;
 	visitor->own.level = own < GZ_DOOR_SENDER_BYTES ? own : GZ_DOOR_SENDER_BYTES;

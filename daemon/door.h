@@ -52,8 +52,8 @@ struct gz_door_limits {
 	uint32_t reader_cost;  /**< as GZ_DOOR_READER_COST */
 };
 
-/** The limits of a place. */
-const struct gz_door_limits *gz_door_limits_of(enum gz_door_place place);
+/** The usual limits of a place. */
+struct gz_door_limits gz_door_usual_limits(enum gz_door_place place);
 
 /** The same numbers for clients of the daemon's user or group and for clients with keys. Chosen:
  * four times as many connections, and what readers.h allows one reader; walks take up to 2 ms then.
@@ -155,11 +155,12 @@ struct gz_door;
 /**
  * Create a door without connections. One for readers knows the topics of the protocol.
  *
+ * @param limits  copied; NULL: the usual ones
  * @param[out] out_door  owned by the caller: gz_door_destroy()
  * @retval GZ_ERR_NO_MEM  no memory
  */
 enum gz_result gz_door_create(enum gz_door_kind kind, enum gz_door_place place,
-			      struct gz_door **out_door);
+			      const struct gz_door_limits *limits, struct gz_door **out_door);
 
 /** Know a further topic that the daemon sends. Beyond GZ_DOOR_TOPICS_MAX it stays strange. */
 void gz_door_know(struct gz_door *door, const char *topic);

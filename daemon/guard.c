@@ -91,6 +91,7 @@ struct gz_guard {
 	struct gz_address_limit told;
 	uint32_t left;   /* connections that ended since memory was given back */
 	int64_t left_ns; /* the first of them */
+	struct gz_door_limits limits[GZ_DOOR_PLACES];
 	size_t door_count;
 	struct guarded_door
 		doors[WAYS * (1 + GZ_GUARD_SOCKETS_MAX)]; /* the first are the readers' */
@@ -437,7 +438,8 @@ static enum gz_result make_doors(struct gz_guard *guard, enum gz_door_kind kind,
 		[BY_TCP] = guard->zap ? GZ_DOOR_KEYS : GZ_DOOR_OPEN, [LOCALLY] = GZ_DOOR_LOCAL
 	};
 	for (int way = 0; way < WAYS; way++) {
-		enum gz_result result = gz_door_create(kind, places[way], &doors[way]);
+		enum gz_result result =
+			gz_door_create(kind, places[way], &guard->limits[places[way]], &doors[way]);
 		if (result != GZ_OK)
 			return result;
 		guard->doors[guard->door_count++] = (struct guarded_door) { .door = doors[way],
@@ -447,14 +449,18 @@ static enum gz_result make_doors(struct gz_guard *guard, enum gz_door_kind kind,
 	return GZ_OK;
 }
 
-enum gz_result gz_guard_create(void *context, const char *authorized_keys, const struct gz_log *log,
-			       struct gz_guard **out_guard)
+enum gz_result gz_guard_create(void *context, const char *authorized_keys,
+			       const struct gz_door_limits limits[GZ_DOOR_PLACES],
+			       const struct gz_log *log, struct gz_guard **out_guard)
 {
 	struct gz_guard *guard = calloc(1, sizeof *guard);
 	if (!guard)
 		return GZ_ERR_NO_MEM;
 	guard->context = context;
 	guard->log = log;
+	for (int place = 0; place < GZ_DOOR_PLACES; place++)
+		guard->limits[place] =
+			limits ? limits[place] : gz_door_usual_limits((enum gz_door_place)place);
 	guard->quit_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 	enum gz_result result = guard->quit_fd >= 0 ? GZ_OK : GZ_ERR_NO_MEM;
 	struct gz_door *doors[WAYS];

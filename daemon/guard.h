@@ -15,6 +15,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "daemon/door.h"
 #include "daemon/quota.h"
 
 /** Most sockets that can be watched. */
@@ -32,14 +33,16 @@ struct gz_connections;
  *
  * @param context          a ZeroMQ context with one I/O thread; outlives the guard
  * @param authorized_keys  path of the list of clients' keys; NULL: clients need no key
+ * @param limits           of the doors, by enum gz_door_place; copied; NULL: the usual ones
  * @param log              borrowed; outlives the guard
  * @param[out] out_guard   owned by the caller: gz_guard_destroy()
  * @retval GZ_ERR_NO_MEM  no memory or no event descriptor
  * @retval GZ_ERR_IO      the authentication socket cannot be bound; logged
  * @return else as gz_authorized_keys_open()
  */
-enum gz_result gz_guard_create(void *context, const char *authorized_keys, const struct gz_log *log,
-			       struct gz_guard **out_guard);
+enum gz_result gz_guard_create(void *context, const char *authorized_keys,
+			       const struct gz_door_limits limits[GZ_DOOR_PLACES],
+			       const struct gz_log *log, struct gz_guard **out_guard);
 
 /**
  * Watch the connections of a socket. Call it before the socket is bound and before

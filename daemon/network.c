@@ -61,6 +61,22 @@ static void know_surfaces(const struct gz_network *network)
 	}
 }
 
+/* The doors' limits, as far as they can be set. */
+static void set_door_limits(const struct gz_config *config,
+			    struct gz_door_limits limits[GZ_DOOR_PLACES])
+{
+	for (int place = 0; place < GZ_DOOR_PLACES; place++) {
+		limits[place] = gz_door_usual_limits((enum gz_door_place)place);
+		if (place == GZ_DOOR_OPEN) {
+			limits[place].connections = (uint32_t)config->open_clients;
+			continue;
+		}
+		limits[place].connections = (uint32_t)config->trusted_clients;
+		limits[place].strange = (uint32_t)config->trusted_topics;
+		limits[place].strange_each = (uint32_t)config->trusted_topics / 4;
+	}
+}
+
 enum gz_result gz_network_open(struct gz_network *network)
 {
 	char path[GZ_PATH_SIZE], authorized[GZ_PATH_SIZE + sizeof GZ_AUTHORIZED_KEYS_FILE];
@@ -74,7 +90,9 @@ enum gz_result gz_network_open(struct gz_network *network)
 			 (int)(strlen(path) - strlen(GZ_SERVER_KEY_FILE)), path,
 			 GZ_AUTHORIZED_KEYS_FILE);
 	}
-	enum gz_result result = gz_guard_create(network->context, curve ? authorized : NULL,
+	struct gz_door_limits limits[GZ_DOOR_PLACES];
+	set_door_limits(network->config, limits);
+	enum gz_result result = gz_guard_create(network->context, curve ? authorized : NULL, limits,
 						network->log, &network->guard);
 	if (result == GZ_OK)
 		know_surfaces(network);

@@ -80,25 +80,25 @@ static bool come_with(int fd, const char *topic, int64_t now_ns)
 static int set_up(void **state)
 {
 	(void)state;
-	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_OPEN, &door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_OPEN, NULL, &door) == GZ_OK ? 0 : -1;
 }
 
 static int set_up_for_senders(void **state)
 {
 	(void)state;
-	return gz_door_create(GZ_DOOR_SENDERS, GZ_DOOR_OPEN, &door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_SENDERS, GZ_DOOR_OPEN, NULL, &door) == GZ_OK ? 0 : -1;
 }
 
 static int set_up_for_local_readers(void **state)
 {
 	(void)state;
-	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_LOCAL, &door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_LOCAL, NULL, &door) == GZ_OK ? 0 : -1;
 }
 
 static int set_up_for_readers_with_keys(void **state)
 {
 	(void)state;
-	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_KEYS, &door) == GZ_OK ? 0 : -1;
+	return gz_door_create(GZ_DOOR_READERS, GZ_DOOR_KEYS, NULL, &door) == GZ_OK ? 0 : -1;
 }
 
 static int tear_down(void **state)
@@ -495,6 +495,32 @@ static void door_local_reader_that_floods_is_ended(void **state)
 	close(reader);
 }
 
+static void door_limits_can_be_set(void **state)
+{
+	(void)state;
+	struct gz_door_limits limits = gz_door_usual_limits(GZ_DOOR_LOCAL);
+	int fds[3][2];
+	char topic[201];
+	fill_topic(topic);
+	limits.connections = 2;
+	limits.strange = 200;
+	gz_door_destroy(&door);
+	assert_int_equal(gz_door_create(GZ_DOOR_READERS, GZ_DOOR_LOCAL, &limits, &door), GZ_OK);
+	for (int i = 0; i < 3; i++) {
+		open_pair(fds[i]);
+		assert_true(come_with(fds[i][0], "gaze.", i));
+	}
+	assert_true(is_ended(fds[0][0]));
+	assert_false(is_ended(fds[1][0]));
+	assert_false(come_with(fds[2][0], topic, 3));
+	topic[199] = '\0';
+	assert_true(come_with(fds[2][0], topic, 4));
+	for (int i = 0; i < 3; i++) {
+		close(fds[i][0]);
+		close(fds[i][1]);
+	}
+}
+
 /* What is read at the board is no strange topic, and needs no message from the socket. */
 static void door_knows_who_wants_messages(void **state)
 {
@@ -672,6 +698,7 @@ TEST_SUITE(door)
 		SENDERS_TEST(door_sender_of_an_old_version_is_soon_refused),
 		SENDERS_TEST(door_idle_senders_give_way_the_longest_idle_first),
 		LOCAL_TEST(door_local_reader_that_floods_is_ended),
+		LOCAL_TEST(door_limits_can_be_set),
 		LOCAL_TEST(door_knows_who_wants_messages),
 		KEYS_TEST(door_sealed_messages_count_whatever_they_are),
 		KEYS_TEST(door_strangers_give_way_to_clients_with_keys),
