@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/clock.h"
+
 /* Sums over fixations and over saccades. */
 struct sums {
 	double raw_step2, our_step2, raw_off2, our_off2, lag_ms;
@@ -20,10 +22,17 @@ static bool good_at(const struct gz_gaze_track *track, size_t i)
 	return isfinite(track->raw[i].x) && isfinite(track->raw[i].y);
 }
 
-static size_t stretch_end(const struct gz_gaze_track *track, size_t begin)
+/* Whether a sample follows the one before it without a gap. */
+static bool follows(const struct gz_gaze_track *track, size_t i)
 {
-	size_t end = begin;
-	while (end < track->count && track->label[end] == track->label[begin])
+	return gz_gaze_track_elapsed_ms(track, i - 1, i) <= gz_ns_to_ms(GZ_SMOOTH_GAP_NS);
+}
+
+size_t gz_gaze_stretch_end(const struct gz_gaze_track *track, size_t begin)
+{
+	size_t end = begin + 1;
+	while (end < track->count && track->label[end] == track->label[begin] &&
+	       follows(track, end))
 		end++;
 	return end;
 }
@@ -67,30 +76,22 @@ static void add_fixation(const struct gz_gaze_track *track, size_t begin, size_t
 	sums->fixations++;
 }
 
-/* A saccade's way. */
-struct way {
-	struct gz_point from, to;
-	double deg;
-};
-
-/* How far along the way a point is, degrees; negative where it has not begun. The law of cosines
- * in the plane, which angles of eye movements are small enough for. */
-static double along_deg(const struct gz_gaze_track *track, const struct way *way,
-			struct gz_point point)
+double gz_saccade_along_deg(const struct gz_gaze_track *track, const struct gz_saccade_way *way,
+			    struct gz_point point)
 {
 	const double from_deg = apart_deg(track, point, way->from);
 	const double to_deg = apart_deg(track, point, way->to);
 	return (square_of(from_deg) + square_of(way->deg) - square_of(to_deg)) / (2 * way->deg);
 }
 
-/* When a path has first done so much of a way, in ms from sample begin on, between samples too; a
- * step behind the last sample if it never has. */
-static double crossing_ms(const struct gz_gaze_track *track, const struct gz_point *path,
-			  const struct way *way, double deg, size_t begin, size_t end)
+double gz_saccade_crossing_ms(const struct gz_gaze_track *track, const struct gz_point *path,
+			      const struct gz_saccade_way *way, double share)
 {
 	double last_deg = 0;
+	const double deg = share * way->deg;
+	const size_t begin = way->begin, end = way->late;
 	for (size_t i = begin; i < end; i++) {
-		const double now_deg = along_deg(track, way, path[i]);
+		const double now_deg = gz_saccade_along_deg(track, way, path[i]);
 		if (now_deg >= deg) {
 			const double before =
 				now_deg > last_deg && i > begin
@@ -105,43 +106,44 @@ static double crossing_ms(const struct gz_gaze_track *track, const struct gz_poi
 	       gz_gaze_track_elapsed_ms(track, end - 2, end - 1);
 }
 
-/* Lag of the saccade that begins behind sample @p begin, ms; NaN where it is too small or not
- * whole. */
-static double lag_of(const struct gz_gaze_track *track, size_t begin, size_t end)
+bool gz_saccade_way_of(const struct gz_gaze_track *track, size_t begin, size_t end,
+		       struct gz_saccade_way *out)
 {
-	for (size_t i = begin; i < end; i++)
+	if (begin == 0 || track->label[begin] != GZ_EVENT_SACCADE || !follows(track, begin))
+		return false;
+	for (size_t i = begin - 1; i < end; i++)
 		if (!good_at(track, i))
-			return NAN;
-	const struct way way = { .from = track->raw[begin],
-				 .to = track->raw[end - 1],
-				 .deg = apart_deg(track, track->raw[begin], track->raw[end - 1]) };
-	if (!(way.deg >= GZ_LAG_LEAST_DEG))
-		return NAN;
-	size_t late = end;
-	while (late < track->count &&
-	       gz_gaze_track_elapsed_ms(track, end - 1, late) <= GZ_LAG_MOST_MS)
-		late++;
+			return false;
+	struct gz_saccade_way way = { track->raw[begin - 1], track->raw[end - 1], 0, begin - 1,
+				      end };
+	way.deg = apart_deg(track, way.from, way.to);
+	while (way.late < track->count &&
+	       gz_gaze_track_elapsed_ms(track, end - 1, way.late) <= GZ_LAG_MOST_MS)
+		way.late++;
+	*out = way;
+	return way.deg >= GZ_LAG_LEAST_DEG;
+}
+
+/* Lag of a saccade, ms. */
+static double lag_of(const struct gz_gaze_track *track, const struct gz_saccade_way *way)
+{
 	double sum_ms = 0;
-	for (int part = 2; part <= 8; part += 3) {
-		const double deg = way.deg * part / 10;
-		sum_ms += crossing_ms(track, track->point, &way, deg, begin, late) -
-			  crossing_ms(track, track->raw, &way, deg, begin, late);
-	}
+	for (int part = 2; part <= 8; part += 3)
+		sum_ms += gz_saccade_crossing_ms(track, track->point, way, part / 10.0) -
+			  gz_saccade_crossing_ms(track, track->raw, way, part / 10.0);
 	return sum_ms / 3;
 }
 
 static void add_track(const struct gz_gaze_track *track, struct sums *sums)
 {
 	for (size_t begin = 0, end; begin < track->count; begin = end) {
-		end = stretch_end(track, begin);
+		end = gz_gaze_stretch_end(track, begin);
 		if (track->label[begin] == GZ_EVENT_FIXATION)
 			add_fixation(track, begin, end, sums);
-		if (track->label[begin] != GZ_EVENT_SACCADE || begin == 0)
+		struct gz_saccade_way way;
+		if (!gz_saccade_way_of(track, begin, end, &way))
 			continue;
-		const double lag_ms = lag_of(track, begin - 1, end);
-		if (!isfinite(lag_ms))
-			continue;
-		sums->lag_ms += lag_ms;
+		sums->lag_ms += lag_of(track, &way);
 		sums->saccades++;
 	}
 }

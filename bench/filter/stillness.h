@@ -39,6 +39,41 @@ struct gz_stillness {
 /** Measure @p point of all tracks against @p raw, where @p label says what the eye does. */
 struct gz_stillness gz_stillness_of(const struct gz_gaze_track *tracks, size_t count);
 
+/** One past the last sample of the stretch of equal labels, without a gap of more than
+ *  GZ_SMOOTH_GAP_NS, that sample @p begin is in. */
+size_t gz_gaze_stretch_end(const struct gz_gaze_track *track, size_t begin);
+
+/** The way of a saccade. */
+struct gz_saccade_way {
+	struct gz_point from, to; /**< of the raw signal */
+	double deg;               /**< between both */
+	size_t begin;             /**< the sample before the saccade */
+	size_t late;              /**< one past the last sample at which a filter may arrive */
+};
+
+/**
+ * The way of the saccade whose samples are @p begin to @p end, without @p end.
+ *
+ * @param[out] out  written on success
+ * @return false if this is no saccade, one that is too small, or one that is not measured whole
+ */
+bool gz_saccade_way_of(const struct gz_gaze_track *track, size_t begin, size_t end,
+		       struct gz_saccade_way *out);
+
+/** How far along the way a point is, degrees; negative where it has not begun. The law of cosines
+ *  in the plane, which angles of eye movements are small enough for. */
+double gz_saccade_along_deg(const struct gz_gaze_track *track, const struct gz_saccade_way *way,
+			    struct gz_point point);
+
+/**
+ * When a path has first done a share of a way, in ms from sample way->begin on, between samples
+ * too; a step behind the last sample if it never has.
+ *
+ * @param path  @p raw or @p point of @p track
+ */
+double gz_saccade_crossing_ms(const struct gz_gaze_track *track, const struct gz_point *path,
+			      const struct gz_saccade_way *way, double share);
+
 #define GZ_SWEEP_MAX 40 /**< most points of a curve */
 
 /** A point of a curve. */

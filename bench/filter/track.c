@@ -64,6 +64,35 @@ enum gz_result gz_gaze_track_start(size_t count, const struct gz_display *displa
 	return GZ_OK;
 }
 
+static enum gz_event event_by_people(int label)
+{
+	switch (label) {
+	case GZ_HUMAN_FIXATION:
+		return GZ_EVENT_FIXATION;
+	case GZ_HUMAN_SACCADE:
+		return GZ_EVENT_SACCADE;
+	case GZ_HUMAN_PURSUIT:
+		return GZ_EVENT_PURSUIT;
+	case GZ_HUMAN_BLINK:
+		return GZ_EVENT_BLINK;
+	default:
+		return GZ_EVENT_LOST;
+	}
+}
+
+enum gz_result gz_gaze_track_take_labelled(const struct gz_labelled_recording *recording,
+					   struct gz_gaze_track *out_track)
+{
+	const enum gz_result result =
+		gz_gaze_track_start(recording->count, &recording->display, out_track);
+	for (size_t i = 0; i < recording->count && result == GZ_OK; i++) {
+		out_track->sample[i] = recording->sample[i];
+		out_track->raw[i] = recording->sample[i].point;
+		out_track->label[i] = event_by_people(recording->label[i]);
+	}
+	return result;
+}
+
 void gz_gaze_track_free(struct gz_gaze_track *track)
 {
 	free(track->sample);

@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "bench/filter/labelled_recording.h"
 #include "filter/pipeline.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
@@ -36,6 +37,15 @@ struct gz_gaze_track {
  */
 enum gz_result gz_gaze_track_start(size_t count, const struct gz_display *display,
 				   struct gz_gaze_track *out_track);
+
+/**
+ * Take a recording that people labelled: its samples, points and labels, in copies. Ringing and
+ * what is undefined is GZ_EVENT_LOST.
+ *
+ * @retval GZ_ERR_NO_MEM  nothing to free
+ */
+enum gz_result gz_gaze_track_take_labelled(const struct gz_labelled_recording *recording,
+					   struct gz_gaze_track *out_track);
 
 /** Free what it holds and zero it. */
 void gz_gaze_track_free(struct gz_gaze_track *track);

@@ -148,39 +148,11 @@ static bool compare_curves(struct tracks *tracks, const char *folder)
 	return (!folder || draw_curves(&ours, &theirs, folder)) && below;
 }
 
-static enum gz_event event_of(int label)
-{
-	switch (label) {
-	case GZ_HUMAN_FIXATION:
-		return GZ_EVENT_FIXATION;
-	case GZ_HUMAN_SACCADE:
-		return GZ_EVENT_SACCADE;
-	case GZ_HUMAN_PURSUIT:
-		return GZ_EVENT_PURSUIT;
-	case GZ_HUMAN_BLINK:
-		return GZ_EVENT_BLINK;
-	default: /* a glissade, or undefined */
-		return GZ_EVENT_LOST;
-	}
-}
-
-static bool take_recording(const struct gz_labelled_recording *recording, struct gz_gaze_track *out)
-{
-	if (gz_gaze_track_start(recording->count, &recording->display, out) != GZ_OK)
-		return false;
-	for (size_t i = 0; i < recording->count; i++) {
-		out->sample[i] = recording->sample[i];
-		out->raw[i] = recording->sample[i].point;
-		out->label[i] = event_of(recording->label[i]);
-	}
-	return true;
-}
-
 static bool read_track(const char *data, size_t file, int coder, struct gz_gaze_track *out)
 {
 	struct gz_labelled_recording recording;
 	const bool taken = gz_labelled_recording_read(data, file, coder, &recording) &&
-			   take_recording(&recording, out);
+			   gz_gaze_track_take_labelled(&recording, out) == GZ_OK;
 	gz_labelled_recording_free(&recording);
 	return taken;
 }
