@@ -28,6 +28,7 @@ static const char *const source_names[] = { "rules", "learned", NULL };
  * blink_max_ms        the longest blink of Stern, Walrath and Goldstein 1984, 400 ms, and a margin
  * window_ms           the shortest fixation of Bauer 2018, section 2.2
  * end_ms              half the window over which speed is measured, less a sample at 500 Hz
+ * despike_delay_ms    a sample at 250 Hz whose times are rounded to milliseconds
  * fixation_...,
  * pursuit_...         chosen by bench/probes/gaze_filter_fit.c, on a plateau
  * all others          chosen on recordings that two people labelled (Andersson et al. 2017) and on
@@ -52,7 +53,7 @@ const struct gz_option gz_pipeline_options[] = {
 	{ "pipeline.noise_ms", GZ_OPTION_DOUBLE, COMBINE(noise_ms), 1, 100000, .preset = "2000",
 	  .help = "time constant for learning each eye's noise, ms" },
 	{ "pipeline.despike_delay_ms", GZ_OPTION_DOUBLE, DESPIKE(max_delay_ms), 0, 100,
-	  .preset = "4",
+	  .preset = "5",
 	  .help = "longest delay of a sample that may be a spike, ms; 0 switches this off" },
 	{ "pipeline.despike_deg", GZ_OPTION_DOUBLE, DESPIKE(threshold_deg), 0, 180, .preset = "0.4",
 	  .help = "smaller departures are not spikes, degrees" },
