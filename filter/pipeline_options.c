@@ -29,6 +29,11 @@ static const char *const source_names[] = { "rules", "learned", NULL };
  * window_ms           the shortest fixation of Bauer 2018, section 2.2
  * end_ms              half the window over which speed is measured, less a sample at 500 Hz
  * despike_delay_ms    a sample at 250 Hz whose times are rounded to milliseconds
+ * smooth_window_ms, smooth_start_ms,
+ * smooth_drift_...,
+ * smooth_pass_deg     chosen by bench/probes/gaze_noise.c: least noise in fixations of all sets
+ *                     without more lag in pursuits than a mean of 100 ms has, and with at most one
+ *                     sample of lag at the onset of saccades
  * fixation_...,
  * pursuit_...         chosen by bench/probes/gaze_filter_fit.c, on a plateau
  * all others          chosen on recordings that two people labelled (Andersson et al. 2017) and on
@@ -121,13 +126,13 @@ const struct gz_option gz_pipeline_options[] = {
 	{ "pipeline.still_scene", GZ_OPTION_BOOL, CLASSIFY(still_scene), .preset = "false",
 	  .help = "nothing moves in the scene, so there is no pursuit" },
 	{ "pipeline.smooth_window_ms", GZ_OPTION_DOUBLE, SMOOTH(window_ms), 0, 1000,
-	  .preset = "100", .help = "longest window of the mean in a fixation, ms" },
-	{ "pipeline.smooth_start_ms", GZ_OPTION_DOUBLE, SMOOTH(start_ms), 0, 1000, .preset = "15",
-	  .help = "shortest window of the mean, at the beginning of a fixation, ms" },
+	  .preset = "300", .help = "longest window of the mean in a fixation, ms" },
+	{ "pipeline.smooth_start_ms", GZ_OPTION_DOUBLE, SMOOTH(start_ms), 0, 1000, .preset = "30",
+	  .help = "window of the mean at the beginning of a fixation, ms" },
 	{ "pipeline.smooth_pursuit_ms", GZ_OPTION_DOUBLE, SMOOTH(pursuit_ms), 0, 1000,
 	  .preset = "25", .help = "time constant in a pursuit, ms" },
 	{ "pipeline.smooth_drift_factor", GZ_OPTION_DOUBLE, SMOOTH(drift_factor), 0, 1000,
-	  .preset = "5",
+	  .preset = "3",
 	  .help = "lag of the mean that halves its window, multiple of the usual distance" },
 	{ "pipeline.smooth_leave_factor", GZ_OPTION_DOUBLE, SMOOTH(leave_factor), 0, 1000,
 	  .preset = "4",
@@ -135,9 +140,9 @@ const struct gz_option gz_pipeline_options[] = {
 		  "distance" },
 	{ "pipeline.smooth_leave_deg", GZ_OPTION_DOUBLE, SMOOTH(leave_deg), 0, 180, .preset = "0.2",
 	  .help = "least distance from which the point follows a saccade, degrees" },
-	{ "pipeline.smooth_drift_deg", GZ_OPTION_DOUBLE, SMOOTH(drift_deg), 0, 180, .preset = "0.4",
-	  .help = "least lag of the mean that halves its window, degrees" },
-	{ "pipeline.smooth_pass_deg", GZ_OPTION_DOUBLE, SMOOTH(pass_deg), 0, 180, .preset = "1.2",
+	{ "pipeline.smooth_drift_deg", GZ_OPTION_DOUBLE, SMOOTH(drift_deg), 0, 180,
+	  .preset = "0.24", .help = "least lag of the mean that halves its window, degrees" },
+	{ "pipeline.smooth_pass_deg", GZ_OPTION_DOUBLE, SMOOTH(pass_deg), 0, 180, .preset = "1.1",
 	  .help = "distance from which a saccade passes unsmoothed, degrees" },
 	{ "pipeline.smooth_glide_ms", GZ_OPTION_DOUBLE, SMOOTH(glide_ms), 0, 1000, .preset = "20",
 	  .help = "time constant of following smaller movements, ms" },

@@ -12,6 +12,10 @@ static const double NOTICE_S = 0.01;
 /* Time constant of the usual distance. Chosen: a few fixations. */
 static const double USUAL_S = 1.0;
 
+/* Shortest time constant with which the mean follows an eye that has moved away from it. Chosen: a
+ * pursuit that is labelled as a fixation is not followed later than by a mean of 100 ms. */
+static const double FOLLOW_S = 0.02;
+
 /* For white noise, the distance of a sample from the mean is this fraction of the distance between
  * two samples: the ratio of their standard deviations. */
 static const double STEP_PART = 0.70710678118654752;
@@ -62,19 +66,28 @@ static void learn_distance(struct gz_smooth_state *state, const struct gz_displa
 			 step_s / (step_s + USUAL_S));
 }
 
-/* The mean over a window that grows while the eye rests and becomes shorter as the mean lags
- * behind. */
+/* The mean over a window that grows while the eye rests. Within the limit the mean hardly moves;
+ * beyond it, the window becomes shorter with the fourth power of how far the mean is behind. */
 static void smooth_fixation(struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			    const struct gz_display *display, double step_s, struct gz_point point)
 {
 	learn_distance(state, display, step_s, point);
 	double limit_deg = fmax(params->drift_deg, params->drift_factor * state->usual_deg.value);
-	double lag = offset_deg(display, state->offset) / limit_deg;
-	state->window_s = fmin(state->window_s + step_s, params->window_ms * 1e-3);
-	double window_s = fmax(state->window_s / (1 + lag * lag), params->start_ms * 1e-3);
+	double lag = offset_deg(display, state->offset) / limit_deg, lag2 = lag * lag;
+	double longest_s = params->window_ms * 1e-3, first_s = params->start_ms * 1e-3;
+	state->window_s = fmin(fmax(state->window_s + step_s, first_s), longest_s);
+	double window_s =
+		fmax(state->window_s / (1 + lag2 * lag2), fmin(FOLLOW_S, state->window_s));
 	double gain = step_s / (window_s + step_s);
 	state->place[0] += gain * (point.x - state->place[0]);
 	state->place[1] += gain * (point.y - state->place[1]);
+}
+
+static double away_deg(const struct gz_smooth_state *state, const struct gz_display *display,
+		       struct gz_point point)
+{
+	const double away[2] = { point.x - state->place[0], point.y - state->place[1] };
+	return offset_deg(display, away);
 }
 
 /* Whether the eye, which is labelled as in a saccade, is still within the noise of where it rested:
@@ -82,9 +95,8 @@ static void smooth_fixation(struct gz_smooth_state *state, const struct gz_smoot
 static bool has_not_left(const struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			 const struct gz_display *display, struct gz_point point)
 {
-	double away[2] = { point.x - state->place[0], point.y - state->place[1] };
 	double limit_deg = fmax(params->leave_deg, params->leave_factor * state->usual_deg.value);
-	return offset_deg(display, away) < limit_deg;
+	return away_deg(state, display, point) < limit_deg;
 }
 
 /* Fading-memory filter of order one: Brookner, "Tracking and Kalman filtering made easy", 1998,
@@ -106,24 +118,28 @@ static void smooth_pursuit(struct gz_smooth_state *state, const struct gz_smooth
 	state->offset[0] = state->offset[1] = 0;
 }
 
+/* Let the returned point glide towards a point; the place stays. */
+static void glide_after(struct gz_smooth_state *state, const struct gz_smooth_params *params,
+			double step_s, struct gz_point point)
+{
+	const double part = step_s / (params->glide_ms * 1e-3);
+	state->glide[0] += part * (point.x - state->place[0]); /* glide_on() does the rest */
+	state->glide[1] += part * (point.y - state->place[1]);
+}
+
 /* Follow a saccade. While it is small and may be noise the point glides after it and the place
  * stays, in case the eye comes back; a larger one is followed at once. */
 static void smooth_saccade(struct gz_smooth_state *state, const struct gz_smooth_params *params,
 			   const struct gz_display *display, double step_s, struct gz_point point)
 {
-	double away[2] = { point.x - state->place[0], point.y - state->place[1] };
 	if (state->mode != GZ_EVENT_SACCADE)
 		state->passing = false;
-	if (offset_deg(display, away) > params->pass_deg)
+	if (away_deg(state, display, point) > params->pass_deg)
 		state->passing = true;
-	if (state->passing) {
+	if (state->passing)
 		jump_to(state, point);
-		return;
-	}
-	double constant_s = params->glide_ms * 1e-3;
-	for (int axis = 0; axis < 2; axis++)
-		state->glide[axis] +=
-			step_s / constant_s * away[axis]; /* glide_on() does the rest */
+	else
+		glide_after(state, params, step_s, point);
 }
 
 /* Smooth a point by its label. @return how it was smoothed */
@@ -152,6 +168,11 @@ static enum gz_event smooth_by_mode(struct gz_smooth_state *state,
 		smooth_saccade(state, params, display, step_s, point);
 		break;
 	default:
+		if (state->mode == GZ_EVENT_FIXATION &&
+		    has_not_left(state, params, display, point)) {
+			smooth_fixation(state, params, display, step_s, point);
+			return GZ_EVENT_FIXATION;
+		}
 		jump_to(state, point);
 		break;
 	}

@@ -2,10 +2,12 @@
  * @file
  * Fifth step: a point that rests while the eye rests.
  *
- * In a fixation it is a recursive mean whose window grows from start_ms to window_ms and becomes
- * shorter as the eye moves away from the mean. A saccade passes unsmoothed once it is too large to
+ * In a fixation it is a recursive mean whose window grows from start_ms to window_ms. It becomes
+ * shorter with the fourth power of how far the eye is from the mean: within drift_deg the point
+ * rests, beyond it the point follows quickly. A saccade passes unsmoothed once it is too large to
  * be noise. In a pursuit an alpha-beta tracker follows constant velocity without lag. Between these
- * modes the point glides.
+ * modes the point glides. A sample that is labelled saccade or noise, but lies where the eye
+ * rested, counts as part of the fixation.
  */
 #ifndef GZ_FILTER_SMOOTH_H
 #define GZ_FILTER_SMOOTH_H
@@ -20,7 +22,7 @@
 /** Settings. pipeline_options.c has the presets and their sources. */
 struct gz_smooth_params {
 	double window_ms;    /**< longest window of the mean, ms */
-	double start_ms;     /**< shortest window of the mean, ms */
+	double start_ms;     /**< window of the mean at the beginning of a fixation, ms */
 	double pursuit_ms;   /**< time constant of the alpha-beta tracker, ms */
 	double drift_factor; /**< the window is halved when the mean is this multiple of the usual
 				distance behind the eye */

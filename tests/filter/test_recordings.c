@@ -13,6 +13,8 @@
 #include "base/clock.h"
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
+#include "bench/filter/precision.h"
+#include "bench/filter/track.h"
 #include "filter/angle.h"
 #include "filter/pipeline.h"
 #include "filter/tested_params.h"
@@ -45,6 +47,15 @@ static const double FILM_F1[LABEL_KINDS][CLASSES] = { { 0.917, 0.848, 0.550, 0.6
 
 /* The requirements on the point: relative to the raw signal, samples, and degrees. */
 static const double NOISE_MOST = 0.20, DISTANCE_MOST = 1.00, LAG_MOST = 2, LANDING_MOST_DEG = 0.5;
+
+/* The requirements by the measures of bench/filter/precision.h on each stimulus and each film:
+ * noise, relative to the raw signal, in the median window; mean lag at the onset of saccades,
+ * samples; lag in pursuits, ms; overshoot, degrees. The lags are those of a mean of 100 ms. */
+struct precision_limits {
+	double step_whole, step_inner, spread_inner, onset_samples, pursuit_ms, overshoot_deg;
+};
+static const struct precision_limits STIMULUS_LIMITS = { 0.20, 0.18, 0.30, 1, 3, 0.3 };
+static const struct precision_limits FILM_LIMITS = { 0.37, 0.34, 0.36, 1, 20, 0.3 };
 
 /* Values whose median is needed. */
 struct list {
@@ -117,6 +128,61 @@ static void run_free(struct run *run)
 	free(run->at_once);
 	free(run->certain);
 	*run = (struct run) { .smooth = NULL };
+}
+
+/* What the pipeline made of recordings. */
+struct tracks {
+	size_t count;
+	struct gz_gaze_track track[GZ_GAZECOM_OBSERVERS_MAX];
+};
+
+static void tracks_free(struct tracks *tracks)
+{
+	while (tracks->count > 0)
+		gz_gaze_track_free(&tracks->track[--tracks->count]);
+}
+
+static bool tracks_add(struct tracks *tracks, const struct run *run)
+{
+	struct gz_gaze_track *track = &tracks->track[tracks->count];
+	if (tracks->count == GZ_GAZECOM_OBSERVERS_MAX ||
+	    gz_gaze_track_take_labelled(&run->recording, track) != GZ_OK)
+		return false;
+	memcpy(track->point, run->smooth, track->count * sizeof track->point[0]);
+	tracks->count++;
+	return true;
+}
+
+/* @return whether the tracks are as still and as quick as they must be */
+static bool precise_enough(const char *name, const struct tracks *tracks,
+			   const struct precision_limits *most)
+{
+	struct gz_precision raw[GZ_PRECISION_PARTS], ours[GZ_PRECISION_PARTS];
+	struct gz_lags lags;
+	bool measured = gz_lags_of(tracks->track, tracks->count, &lags);
+	for (int part = 0; part < GZ_PRECISION_PARTS; part++)
+		measured = measured &&
+			   gz_precision_of(tracks->track, tracks->count, true,
+					   (enum gz_precision_part)part, &raw[part]) &&
+			   gz_precision_of(tracks->track, tracks->count, false,
+					   (enum gz_precision_part)part, &ours[part]);
+	if (!measured)
+		return false;
+	const double whole =
+		ours[GZ_PRECISION_WHOLE].step_median_deg / raw[GZ_PRECISION_WHOLE].step_median_deg;
+	const double inner =
+		ours[GZ_PRECISION_INNER].step_median_deg / raw[GZ_PRECISION_INNER].step_median_deg;
+	const double spread = ours[GZ_PRECISION_INNER].spread_median_deg /
+			      raw[GZ_PRECISION_INNER].spread_median_deg;
+	printf("%-18s median window: S2S whole %.3f (at most %.2f), inner %.3f (%.2f), STD inner "
+	       "%.3f (%.2f); mean onset lag %.2f samples (%.0f), pursuit lag %.1f ms (%.0f), "
+	       "overshoot %.2f deg (%.1f)\n",
+	       name, whole, most->step_whole, inner, most->step_inner, spread, most->spread_inner,
+	       lags.onset_mean, most->onset_samples, lags.pursuit_ms, most->pursuit_ms,
+	       lags.overshoot_deg, most->overshoot_deg);
+	return whole <= most->step_whole && inner <= most->step_inner &&
+	       spread <= most->spread_inner && lags.onset_mean <= most->onset_samples &&
+	       lags.pursuit_ms <= most->pursuit_ms && lags.overshoot_deg <= most->overshoot_deg;
 }
 
 static void measure_agreement(const struct run *run, int coder, struct measures *m)
@@ -246,7 +312,8 @@ static void measure_stretches(const struct run *run, struct measures *m)
 }
 
 static bool measure_stimulus(int stimulus, const char *data,
-			     const struct gz_pipeline_params *params, struct measures *m)
+			     const struct gz_pipeline_params *params, struct measures *m,
+			     struct tracks *tracks)
 {
 	for (int coder = 0; coder < GZ_LABELLED_CODERS; coder++) {
 		for (size_t i = 0; i < GZ_LABELLED_FILES; i++) {
@@ -258,6 +325,7 @@ static bool measure_stimulus(int stimulus, const char *data,
 			if (ran) {
 				measure_agreement(&run, coder, m);
 				measure_stretches(&run, m);
+				ran = tracks_add(tracks, &run);
 			}
 			run_free(&run);
 			if (!ran) {
@@ -347,10 +415,11 @@ static void measure_film(const struct run *run, struct gz_agreement film[LABEL_K
 }
 
 static bool measure_films(const char *data, struct gz_agreement film[LABEL_KINDS][CLASSES],
-			  struct measures *m)
+			  struct measures *m, int *out_failures)
 {
 	for (size_t i = 0; i < GZ_GAZECOM_FILMS; i++) {
 		static struct gz_gazecom gazecom;
+		static struct tracks tracks;
 		bool ran = gz_gazecom_read(data, i, &gazecom);
 		for (size_t k = 0; ran && k < gazecom.count; k++) {
 			struct run run = { .recording = gazecom.recording[k] };
@@ -359,9 +428,12 @@ static bool measure_films(const char *data, struct gz_agreement film[LABEL_KINDS
 			if (ran) {
 				measure_film(&run, film);
 				measure_stretches(&run, m);
+				ran = tracks_add(&tracks, &run);
 			}
 			run_free(&run);
 		}
+		*out_failures += !precise_enough(gz_gazecom_films[i], &tracks, &FILM_LIMITS);
+		tracks_free(&tracks);
 		gz_gazecom_free(&gazecom);
 		if (!ran) {
 			fprintf(stderr, "%s: cannot read %s\n", data, gz_gazecom_films[i]);
@@ -404,14 +476,17 @@ TEST_SUITE(recordings)
 	for (int i = 0; i < GZ_LABELLED_STIMULI; i++) {
 		static struct measures m;
 		m = (struct measures) { .raw_step2 = 0 };
-		if (!measure_stimulus(i, data, &tested_params, &m))
+		static struct tracks tracks;
+		if (!measure_stimulus(i, data, &tested_params, &m, &tracks))
 			return SKIPPED;
 		print_measures(&STIMULI[i], &m);
 		failures += !good_enough(&STIMULI[i], &m);
+		failures += !precise_enough(STIMULI[i].name, &tracks, &STIMULUS_LIMITS);
+		tracks_free(&tracks);
 	}
 	static struct gz_agreement film[LABEL_KINDS][CLASSES];
 	static struct measures films;
-	if (!measure_films(data, film, &films))
+	if (!measure_films(data, film, &films, &failures))
 		return SKIPPED;
 	print_point("GazeCom", &films);
 	failures += !films_good_enough(film);

@@ -47,11 +47,11 @@ static void fixation_becomes_steadier_the_longer_it_lasts(void **state)
 		for (int k = 0; k < 100; k++) {
 			float noise = (float)(0.002 * gz_random_normal(&random));
 			struct gz_point p = step(&s, GZ_EVENT_FIXATION, k, true, 0.3f + noise);
-			if (k == 4 || k == 99)
+			if (k == 9 || k == 99)
 				off2[k == 99] += pow((p.x - 0.3) / 0.002, 2) / 300;
 		}
 	}
-	CHECK_BETWEEN(sqrt(off2[0]), 0.3, 0.7); /* 5 samples: 0.45 */
+	CHECK_BETWEEN(sqrt(off2[0]), 0.3, 0.7); /* 20 ms */
 	CHECK_BETWEEN(sqrt(off2[1]), 0.05, 0.2);
 }
 
@@ -82,6 +82,36 @@ static void false_alarm_of_a_saccade_does_not_move_the_point(void **state)
 	for (int k = 100; k < 110; k++)
 		CHECK_BETWEEN(step(&s, GZ_EVENT_SACCADE, k, true, 0.3f + noise[k % 5]).x, 0.2996,
 			      0.3004);
+}
+
+static void noise_label_where_the_eye_rests_does_not_move_the_point(void **state)
+{
+	(void)state;
+	struct gz_smooth_state s = { .started = false };
+	float noise[] = { 0.001f, -0.0012f, 0.0008f, -0.0006f, 0 };
+	for (int k = 0; k < 100; k++)
+		(void)step(&s, GZ_EVENT_FIXATION, k, true, 0.3f + noise[k % 5]);
+	for (int k = 100; k < 110; k++)
+		CHECK_BETWEEN(step(&s, GZ_EVENT_BLINK, k, true, 0.3f + noise[k % 5]).x, 0.2996,
+			      0.3004);
+	/* Half a degree away what was measured is shown, as nobody knows what it is. */
+	assert_true(step(&s, GZ_EVENT_BLINK, 110, true, 0.31f).x == 0.31f);
+	assert_true(step(&s, GZ_EVENT_BLINK, 111, true, 0.3f).x == 0.3f);
+}
+
+static void drift_within_the_limit_hardly_moves_the_point(void **state)
+{
+	(void)state;
+	struct gz_smooth_state s = { .started = false };
+	struct gz_point from = { 0, 0 }, to = { 0, 0 };
+	for (int k = 0; k < 250; k++)
+		from = step(&s, GZ_EVENT_FIXATION, k, true, 0.3f);
+	for (int k = 250; k < 350; k++) /* 0.15 degrees in 200 ms */
+		to = step(&s, GZ_EVENT_FIXATION, k, true, 0.3f + 0.003f * (float)(k - 250) / 100);
+	CHECK_BETWEEN(to.x - from.x, 0, 0.3 * 0.003);
+	for (int k = 350; k < 450; k++) /* a degree in 200 ms more */
+		to = step(&s, GZ_EVENT_FIXATION, k, true, 0.303f + 0.02f * (float)(k - 350) / 100);
+	CHECK_BETWEEN(to.x, 0.316, 0.323); /* no more than 0.35 degrees behind */
 }
 
 static void pursuit_is_followed_without_steady_lag(void **state)
@@ -143,6 +173,8 @@ TEST_SUITE(smooth)
 		cmocka_unit_test(fixation_becomes_steadier_the_longer_it_lasts),
 		cmocka_unit_test(saccade_passes_unsmoothed),
 		cmocka_unit_test(false_alarm_of_a_saccade_does_not_move_the_point),
+		cmocka_unit_test(noise_label_where_the_eye_rests_does_not_move_the_point),
+		cmocka_unit_test(drift_within_the_limit_hardly_moves_the_point),
 		cmocka_unit_test(pursuit_is_followed_without_steady_lag),
 		cmocka_unit_test(the_mean_lets_go_of_an_unnoticed_movement),
 		cmocka_unit_test(invalid_sample_holds_the_place),
