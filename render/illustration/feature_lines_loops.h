@@ -19,13 +19,15 @@ enum {
 
 /* Where the neighbours of a filter are: columns, rows. */
 struct line_stencil {
+	int reach; /* steps to the farthest neighbour, along x and y */
 	int count;
 	signed char offsets[NEIGHBOURS_MAX][2];
 };
 
 static const struct line_stencil line_stencils[GZ_LINE_FILTER_COUNT] = {
-	[GZ_LINES_4] = { 4, { { 0, -1 }, { -1, 0 }, { 1, 0 }, { 0, 1 } } },
-	[GZ_LINES_8] = { 8,
+	[GZ_LINES_4] = { 1, 4, { { 0, -1 }, { -1, 0 }, { 1, 0 }, { 0, 1 } } },
+	[GZ_LINES_8] = { 1,
+			 8,
 			 { { -1, -1 },
 			   { 0, -1 },
 			   { 1, -1 },
@@ -34,7 +36,8 @@ static const struct line_stencil line_stencils[GZ_LINE_FILTER_COUNT] = {
 			   { -1, 1 },
 			   { 0, 1 },
 			   { 1, 1 } } },
-	[GZ_LINES_12] = { 12,
+	[GZ_LINES_12] = { 2,
+			  12,
 			  { { 0, -2 },
 			    { -1, -1 },
 			    { 0, -1 },
@@ -47,11 +50,11 @@ static const struct line_stencil line_stencils[GZ_LINE_FILTER_COUNT] = {
 			    { 0, 1 },
 			    { 1, 1 },
 			    { 0, 2 } } },
-	[GZ_LINES_24] = { 24,
-			  { { -2, -2 }, { -1, -2 }, { 0, -2 }, { 1, -2 }, { 2, -2 }, { -2, -1 },
-			    { -1, -1 }, { 0, -1 },  { 1, -1 }, { 2, -1 }, { -2, 0 }, { -1, 0 },
-			    { 1, 0 },   { 2, 0 },   { -2, 1 }, { -1, 1 }, { 0, 1 },  { 1, 1 },
-			    { 2, 1 },   { -2, 2 },  { -1, 2 }, { 0, 2 },  { 1, 2 },  { 2, 2 } } },
+	[GZ_LINES_24] = { 2, 24, { { -2, -2 }, { -1, -2 }, { 0, -2 }, { 1, -2 }, { 2, -2 },
+				   { -2, -1 }, { -1, -1 }, { 0, -1 }, { 1, -1 }, { 2, -1 },
+				   { -2, 0 },  { -1, 0 },  { 1, 0 },  { 2, 0 },  { -2, 1 },
+				   { -1, 1 },  { 0, 1 },   { 1, 1 },  { 2, 1 },  { -2, 2 },
+				   { -1, 2 },  { 0, 2 },   { 1, 2 },  { 2, 2 } } },
 };
 
 /* Pixels of a row with what surrounds them, so that no index leaves the picture. */
@@ -68,12 +71,18 @@ static int within(int index, int count)
 	return index < count ? index : count - 1;
 }
 
-/* Copy what surrounds @p count pixels from (x, y) on. */
+/* Some pixels of a row, and how far around them a filter looks. */
+struct line_place {
+	int x, y, count, reach;
+};
+
+/* Copy what surrounds some pixels: of the window, the rows that the filter reaches. */
 static void take_window(const struct gz_line_planes *planes, const struct gz_plane_band *band,
-			int x, int y, int count, struct line_window *window)
+			const struct line_place *place, struct line_window *window)
 {
+	const int x = place->x, y = place->y, count = place->count;
 	const bool inside = x >= REACH && x + count + REACH <= band->width;
-	for (int row = 0; row < 2 * REACH + 1; row++) {
+	for (int row = REACH - place->reach; row <= REACH + place->reach; row++) {
 		const ptrdiff_t start =
 			(ptrdiff_t)within(y + row - REACH, band->height) * band->width;
 		const uint32_t *ids = planes->ids + start;
@@ -91,12 +100,12 @@ static void take_window(const struct gz_line_planes *planes, const struct gz_pla
 }
 
 /* Whether all pixels of a window are of one object. */
-static bool is_one_object(const struct line_window *window, int count)
+static bool is_one_object(const struct line_window *window, const struct line_place *place)
 {
 	const uint32_t own = window->ids[REACH][REACH];
 	uint32_t others = 0;
-	for (int row = 0; row < 2 * REACH + 1; row++)
-		for (int i = 0; i < count + 2 * REACH; i++)
+	for (int row = REACH - place->reach; row <= REACH + place->reach; row++)
+		for (int i = 0; i < place->count + 2 * REACH; i++)
 			others |= window->ids[row][i] ^ own;
 	return others == 0;
 }
@@ -128,13 +137,18 @@ static void add_depth_neighbour(const struct line_window *window, const signed c
 
 /* Filter some pixels of a row. */
 static void filter_lines(const struct line_window *window, const struct line_stencil *stencil,
-			 int count, float threshold, float *restrict out_lines)
+			 const struct line_place *place, float threshold, float *restrict out_lines)
 {
+	const int count = place->count;
 	float id_sums[LINE_COLUMNS] = { 0 }, depth_sums[LINE_COLUMNS] = { 0 };
 	const uint32_t *own = &window->ids[REACH][REACH];
 	const float *own_depth = &window->depth[REACH][REACH];
 	const float neighbours = (float)stencil->count;
-	const bool one_object = is_one_object(window, count);
+	const bool one_object = is_one_object(window, place);
+	if (one_object && own[0] == 0) {
+		memset(out_lines, 0, (size_t)count * sizeof *out_lines); /* GZ_LINE_NONE */
+		return;
+	}
 	for (int k = 0; k < stencil->count; k++)
 		add_depth_neighbour(window, stencil->offsets[k], count, depth_sums);
 	for (int k = 0; !one_object && k < stencil->count; k++)
@@ -151,14 +165,17 @@ static void filter_lines(const struct line_window *window, const struct line_ste
 static void find_lines(const struct gz_line_planes *planes, const struct gz_plane_band *band,
 		       enum gz_line_filter filter, float threshold, float *out_lines)
 {
+	const struct line_stencil *stencil = &line_stencils[filter];
 	struct line_window window;
 	for (int y = band->first; y < band->end; y++)
 		for (int x = 0; x < band->width; x += LINE_COLUMNS) {
 			const int rest = band->width - x;
-			const int count = rest < LINE_COLUMNS ? rest : LINE_COLUMNS;
+			const struct line_place place = { x, y,
+							  rest < LINE_COLUMNS ? rest : LINE_COLUMNS,
+							  stencil->reach };
 			float *lines = out_lines + (ptrdiff_t)y * band->width + x;
-			take_window(planes, band, x, y, count, &window);
-			filter_lines(&window, &line_stencils[filter], count, threshold, lines);
+			take_window(planes, band, &place, &window);
+			filter_lines(&window, stencil, &place, threshold, lines);
 		}
 }
 

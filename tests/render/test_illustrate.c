@@ -40,7 +40,7 @@ static void set_up_easel(struct easel *easel)
 						   &easel->settings, NULL };
 	memset(easel, 0, sizeof *easel);
 	easel->volume = field_volume(field_ball, dims, spacing, GZ_VOXEL_F32);
-	easel->meshes[0] = mesh_ball(RADIUS_MM, 5);
+	easel->meshes[0] = mesh_ball(RADIUS_MM, 4);
 	easel->count = 1;
 	for (int i = 0; i < 2; i++) {
 		easel->objects[i] = (struct gz_object) { .id = 3 + (uint32_t)i,
@@ -70,7 +70,7 @@ static void take_down_easel(struct easel *easel)
 static void add_ball(struct easel *easel, double x, double y, double z)
 {
 	const double place[3] = { x, y, z };
-	easel->meshes[1] = mesh_ball(4, 4);
+	easel->meshes[1] = mesh_ball(4, 3);
 	for (size_t v = 0; v < easel->meshes[1].vertex_count; v++)
 		for (int axis = 0; axis < 3; axis++)
 			easel->meshes[1].positions[v][axis] += (float)place[axis];
