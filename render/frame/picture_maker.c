@@ -101,6 +101,21 @@ enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 	return result;
 }
 
+void gz_picture_maker_adopt(struct gz_picture_maker *maker, struct gz_picture_maker **from)
+{
+	struct gz_drawers *own = &maker->drawers, *others = &(*from)->drawers;
+	gz_picture_maker_forget(maker);
+	free(maker->kept_by.settings);
+	maker->kept_by.settings = NULL;
+	gz_drawers_free(own);
+	others->log = own->log;
+	others->backend = own->backend;
+	others->backend_params = own->backend_params;
+	*own = *others;
+	*others = (struct gz_drawers) { .log = own->log };
+	gz_picture_maker_destroy(from);
+}
+
 /* Rays along a side of the picture; 0 if there would be none or too many. */
 static int rays_along(int side, double rate)
 {

@@ -58,6 +58,14 @@ enum gz_result gz_picture_maker_create(const struct gz_picture_maker_params *par
 enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 				     const struct gz_object *objects, size_t count);
 
+/**
+ * Go on with what another maker has made ready: what it shows, and how it draws that. It must show
+ * the same list of objects as @p maker.
+ *
+ * @param[in,out] from  destroyed and set to NULL
+ */
+void gz_picture_maker_adopt(struct gz_picture_maker *maker, struct gz_picture_maker **from);
+
 /** One picture to make. All pointers are borrowed until the call returns. */
 struct gz_picture_request {
 	const struct gz_camera *camera;

@@ -126,11 +126,53 @@ static void slices_are_refused_once_in_a_picture_on_cpu(void **state)
 	end_switching(&all);
 }
 
+/* What a session of the window does while its isovalue moves and then rests. */
+static void triangles_are_made_beside_the_frames(void **state)
+{
+	(void)state;
+	static uint8_t waited[4 * WIDTH * HEIGHT], ready[4 * WIDTH * HEIGHT];
+	struct switching all;
+	const int isosurface = choice_of("isosurface");
+	begin_switching(&all);
+	struct gz_frame_maker *maker = all.maker;
+	all.settings.technique = isosurface;
+	assert_int_equal(gz_frame_prepare(maker, &all.settings, NULL), GZ_FRAME_CANNOT_WAIT);
+	make_with(&all, isosurface, waited);
+	assert_true(all.record.prepare_ms > 0);
+	all.settings.rays.surface.isovalue = 120;
+	make_with(&all, isosurface, waited);
+	assert_true(all.record.prepare_ms > 0);
+	/* One that is given up, and the one that counts. */
+	all.settings.rays.surface.isovalue = 100;
+	assert_int_equal(gz_frame_prepare(maker, &all.settings, NULL), GZ_FRAME_PREPARING);
+	all.settings.rays.surface.isovalue = 90;
+	make_with(&all, isosurface, ready);
+	all.settings.rays.surface.isovalue = 120;
+	enum gz_frame_ready far;
+	while ((far = gz_frame_prepare(maker, &all.settings, NULL)) == GZ_FRAME_PREPARING) {
+		all.settings.rays.surface.source = GZ_SURFACE_VOXELS;
+		make_with(&all, isosurface, ready);
+		all.settings.rays.surface.source = GZ_SURFACE_TRIANGLES;
+	}
+	assert_int_equal(far, GZ_FRAME_READY);
+	make_with(&all, isosurface, ready);
+	assert_true(all.record.prepare_ms == 0);
+	assert_memory_equal(ready, waited, sizeof ready);
+	/* Other techniques still follow, and a thread that runs is waited for at the end. */
+	make_with(&all, choice_of("raycast"), ready);
+	make_with(&all, isosurface, ready);
+	assert_memory_equal(ready, waited, sizeof ready);
+	all.settings.rays.surface.isovalue = 60;
+	assert_int_equal(gz_frame_prepare(maker, &all.settings, NULL), GZ_FRAME_PREPARING);
+	end_switching(&all);
+}
+
 TEST_SUITE(technique_switch)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(technique_follows_the_settings_and_a_refused_one_changes_nothing),
 		cmocka_unit_test(slices_are_refused_once_in_a_picture_on_cpu),
+		cmocka_unit_test(triangles_are_made_beside_the_frames),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

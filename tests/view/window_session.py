@@ -133,13 +133,13 @@ class Leaves(WindowCase):
                    "--record", session, gaze="0.5,0.5")
         self.key("p")
         self.until_idle()
-        self.move(300, 213)  # the section isosurface, whose first row is the isovalue
+        self.move(300, 236)  # the section isosurface, whose first row is the isovalue
         self.tool("click", 1)
         self.until_idle()
-        self.move(350, 240)
+        self.move(350, 263)
         self.tool("mousedown", 1)
         self.until_idle()
-        self.move(390, 240)
+        self.move(390, 263)
         self.until_idle()
         self.tool("mouseup", 1)
         time.sleep(0.4)  # the rest that is tested

@@ -11,6 +11,7 @@
 #include "render/plan/method.h"
 #include "render/scene/scene_open.h"
 #include "render/scene/techniques.h"
+#include "view/frame/spare.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -38,6 +39,8 @@ struct gz_frame_maker {
 	struct time_points *time_points;   /* NULL until another one is asked for */
 	uint64_t data_revision;            /* of the scene's volume */
 	struct gz_picture_maker *pictures; /* NULL: not started */
+	struct gz_backend_params params;   /* of pictures */
+	struct gz_spare *spare;            /* NULL: none is made */
 	uint64_t transfer_revision;        /* of the scene's transfer function */
 	struct gz_attention attention;
 	struct gz_gaze_reading reading; /* the last one passed to the attention */
@@ -154,15 +157,22 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
+/* What the scene shows, with the revisions of now. */
+static size_t list_scene_objects(const struct gz_frame_maker *maker,
+				 struct gz_object out_objects[GZ_SCENE_LISTED_MAX])
+{
+	const size_t count = gz_scene_list_objects(&maker->scene, out_objects, GZ_SCENE_LISTED_MAX);
+	for (size_t i = 0; i < count; i++) {
+		out_objects[i].transfer_revision = maker->transfer_revision;
+		out_objects[i].data_revision = maker->data_revision;
+	}
+	return count;
+}
+
 static enum gz_result show_scene_objects(struct gz_frame_maker *maker)
 {
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
-	const size_t count =
-		gz_scene_list_objects(&maker->scene, objects, sizeof objects / sizeof objects[0]);
-	for (size_t i = 0; i < count; i++) {
-		objects[i].transfer_revision = maker->transfer_revision;
-		objects[i].data_revision = maker->data_revision;
-	}
+	const size_t count = list_scene_objects(maker, objects);
 	return gz_picture_maker_show(maker->pictures, objects, count);
 }
 
@@ -183,6 +193,7 @@ static struct gz_backend_params backend_params(const struct gz_view_options *opt
 static enum gz_result start_pictures(struct gz_frame_maker *maker,
 				     const struct gz_picture_maker_params *params)
 {
+	maker->params = params->backend_params;
 	enum gz_result r = gz_picture_maker_create(params, maker->log, &maker->pictures);
 	if (r == GZ_OK)
 		r = show_scene_objects(maker);
@@ -244,6 +255,7 @@ bool gz_frame_cpu_suffices(const struct gz_frame_maker *maker)
 
 void gz_frame_maker_stop(struct gz_frame_maker *maker)
 {
+	gz_spare_drop(&maker->spare);
 	gz_picture_maker_destroy(&maker->pictures);
 }
 
@@ -260,6 +272,7 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer)
 {
+	gz_spare_drop(&maker->spare);
 	maker->scene.transfer = *transfer;
 	maker->transfer_revision++;
 	maker->any_made = false;
@@ -274,6 +287,7 @@ enum gz_result gz_frame_set_labels(struct gz_frame_maker *maker, const struct gz
 	struct gz_scene *scene = &maker->scene;
 	const struct gz_label_look shown = scene->settings.labels;
 	struct gz_label_surfaces *before = NULL;
+	gz_spare_drop(&maker->spare);
 	enum gz_result r = gz_scene_remake_labels(scene, maker->path, look, maker->log, &before);
 	if (r != GZ_OK)
 		return r;
@@ -423,6 +437,7 @@ enum gz_result gz_frame_show_taken(struct gz_frame_maker *maker)
 {
 	if (!maker->time_points || !maker->time_points->taken)
 		return GZ_ERR_INVAL;
+	gz_spare_drop(&maker->spare);
 	exchange_time_points(maker);
 	maker->any_made = false;
 	enum gz_result r = maker->pictures ? show_scene_objects(maker) : GZ_OK;
@@ -504,6 +519,45 @@ bool gz_frame_refinable(const struct gz_frame_maker *maker)
 bool gz_frame_settling(const struct gz_frame_maker *maker)
 {
 	return gz_picture_maker_settling(maker->pictures);
+}
+
+static enum gz_frame_ready start_spare(struct gz_frame_maker *maker,
+				       const struct gz_scene_settings *settings,
+				       void (*finished)(void *user))
+{
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	const size_t count = list_scene_objects(maker, objects);
+	const struct gz_spare_request request = {
+		.objects = objects,
+		.object_count = count,
+		.settings = settings,
+		.params = maker->params,
+		.finished = finished,
+		.log = maker->log,
+	};
+	return gz_spare_start(&request, &maker->spare) == GZ_OK ? GZ_FRAME_PREPARING
+								: GZ_FRAME_CANNOT_WAIT;
+}
+
+enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
+				     const struct gz_scene_settings *settings,
+				     void (*finished)(void *user))
+{
+	if (!maker->pictures || strcmp(gz_frame_backend(maker), cpu_name) != 0 ||
+	    settings->technique != maker->scene.settings.technique)
+		return GZ_FRAME_CANNOT_WAIT;
+	if (maker->spare && !gz_spare_finished(maker->spare))
+		return GZ_FRAME_PREPARING;
+	const bool suits = maker->spare && gz_spare_suits(maker->spare, settings);
+	if (maker->spare && !suits)
+		gz_spare_drop(&maker->spare);
+	if (!suits)
+		return start_spare(maker, settings, finished);
+	struct gz_picture_maker *made = NULL;
+	if (gz_spare_take(&maker->spare, &made) != GZ_OK)
+		return GZ_FRAME_CANNOT_WAIT;
+	gz_picture_maker_adopt(maker->pictures, &made);
+	return GZ_FRAME_READY;
 }
 
 /* Draw by another technique if the settings ask for it. If that fails, the present one stays. */
@@ -687,6 +741,7 @@ void gz_frame_maker_destroy(struct gz_frame_maker **maker)
 {
 	if (!maker || !*maker)
 		return;
+	gz_spare_drop(&(*maker)->spare);
 	gz_picture_maker_destroy(&(*maker)->pictures);
 	free_time_points((*maker)->time_points);
 	gz_scene_free(&(*maker)->scene);

@@ -186,6 +186,23 @@ const char *gz_frame_backend(const struct gz_frame_maker *maker);
  */
 const char *gz_frame_standard_backend(const struct gz_frame_maker *maker);
 
+/** How far gz_frame_prepare() is. */
+enum gz_frame_ready {
+	GZ_FRAME_READY,       /**< the next frame need not wait */
+	GZ_FRAME_PREPARING,   /**< it must; finished is called when asking again is worth it */
+	GZ_FRAME_CANNOT_WAIT, /**< it must, and nothing can be done beside the frames */
+};
+
+/**
+ * Make triangles of the settings' isovalue ready on a thread of its own, while frames with
+ * GZ_SURFACE_VOXELS go on. Only where the cpu backend draws.
+ *
+ * @param finished  called on the thread; may be NULL
+ */
+enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
+				     const struct gz_scene_settings *settings,
+				     void (*finished)(void *user));
+
 /** Drop what earlier frames accumulated: temporal.accumulate starts again with the next frame. */
 void gz_frame_forget(struct gz_frame_maker *maker);
 

@@ -1,4 +1,5 @@
-/* The part that shows a surface without triangles while its isovalue changes. */
+/* The part that shows a surface without triangles while its isovalue changes, and until those of
+ * the new one are made. */
 #include <math.h>
 
 #include <GLFW/glfw3.h>
@@ -29,6 +30,13 @@ static bool can_do_without_triangles(const struct gz_window *window,
 	       gz_volume_voxel_count(volume) <= GZ_SURFACE_VOXELS_MAX;
 }
 
+/* Called on the thread that makes them. */
+static void wake_loop_for_triangles(void *user)
+{
+	(void)user;
+	glfwPostEmptyEvent();
+}
+
 static void forget_isovalue(struct gz_window *window)
 {
 	window->isovalue->rest = (struct gz_isovalue_rest) { 0 };
@@ -42,16 +50,20 @@ static void watch_isovalue(struct gz_window *window, struct gz_window_gaze *gaze
 		return;
 	}
 	const bool before = window->without_triangles;
-	window->without_triangles = gz_isovalue_rest_step(&window->isovalue->rest,
-							  window->settings.rays.surface.isovalue,
-							  is_mouse_held(window), gz_clock_now_ns());
+	const bool moves = gz_isovalue_rest_step(&window->isovalue->rest,
+						 window->settings.rays.surface.isovalue,
+						 is_mouse_held(window), gz_clock_now_ns());
+	window->without_triangles =
+		moves ||
+		(before && gz_frame_prepare(window->maker, &window->settings,
+					    wake_loop_for_triangles) == GZ_FRAME_PREPARING);
 	window->cast_needed = window->cast_needed || window->without_triangles != before;
 }
 
 /* Letting go of the mouse is an event. */
 static double isovalue_patience_s(const struct gz_window *window)
 {
-	return window->without_triangles && !is_mouse_held(window)
+	return window->isovalue->rest.moves && !is_mouse_held(window)
 		       ? gz_ns_to_s(gz_isovalue_rest_left_ns(&window->isovalue->rest,
 							     gz_clock_now_ns()))
 		       : INFINITY;
