@@ -63,6 +63,12 @@ static int kind_of(const struct gz_forest_node *node)
 	return usual_features[node->feature] < node->threshold ? EXCLUDES_BELOW : EXCLUDES_ABOVE;
 }
 
+/* An entry and its list: feature and kind. */
+struct unsorted_entry {
+	struct list_entry entry;
+	int list;
+};
+
 /* One tree being put into lists. */
 struct list_maker {
 	struct gz_forest_lists *lists;
@@ -70,8 +76,7 @@ struct list_maker {
 	uint32_t tree;
 	uint32_t leaf_count; /* so far, in the order in which they are excluded */
 	uint32_t entry_count;
-	struct list_entry *entries; /* of all trees, in any order */
-	uint16_t *places;           /* the list of each entry: feature and kind */
+	struct unsorted_entry *entries; /* of all trees */
 };
 
 /* A subtree in front of which a walk is, and how far it has come there. */
@@ -99,13 +104,12 @@ static uint32_t bits_between(uint32_t first, uint32_t end)
 static void take_list_question(struct list_maker *maker, const struct gz_forest_node *node,
 			       uint32_t first_leaf)
 {
-	uint32_t entry = maker->entry_count++;
-	maker->entries[entry] = (struct list_entry) {
-		.threshold = node->threshold,
-		.kept = ~bits_between(first_leaf, maker->leaf_count),
-		.tree = maker->tree,
+	maker->entries[maker->entry_count++] = (struct unsorted_entry) {
+		.entry = { .threshold = node->threshold,
+			   .kept = ~bits_between(first_leaf, maker->leaf_count),
+			   .tree = maker->tree },
+		.list = node->feature * KINDS + kind_of(node),
 	};
-	maker->places[entry] = (uint16_t)(node->feature * KINDS + kind_of(node));
 }
 
 /* Put a tree into the lists. The side that a question can exclude comes first, so that the first
@@ -144,33 +148,28 @@ static bool take_list_tree(struct list_maker *maker)
 	return true;
 }
 
-static int compare_rising(const void *a, const void *b)
+/* By list, and within it in the order in which it is read. */
+static int compare_unsorted(const void *a, const void *b)
 {
-	float x = ((const struct list_entry *)a)->threshold;
-	float y = ((const struct list_entry *)b)->threshold;
-	return (x > y) - (x < y);
+	const struct unsorted_entry *x = a, *y = b;
+	float first = x->entry.threshold, second = y->entry.threshold;
+	int rising = (first > second) - (first < second);
+	if (x->list != y->list)
+		return x->list < y->list ? -1 : 1;
+	return x->list % KINDS == EXCLUDES_BELOW ? rising : -rising;
 }
 
-static int compare_falling(const void *a, const void *b)
-{
-	return compare_rising(b, a);
-}
-
-/* Gather the entries of each list, and order them. */
+/* Put the entries into their lists, in order. */
 static void sort_lists(struct list_maker *maker)
 {
 	struct gz_forest_lists *lists = maker->lists;
-	uint32_t end = 0;
+	uint32_t next = 0, end = 0;
+	qsort(maker->entries, maker->entry_count, sizeof maker->entries[0], compare_unsorted);
 	for (int list = 0; list < GZ_MOVEMENT_FEATURES * KINDS; list++) {
 		int kind = list % KINDS;
-		uint32_t first = end;
-		for (uint32_t i = 0; i < maker->entry_count; i++) {
-			if (maker->places[i] == list)
-				lists->entries[end++] = maker->entries[i];
-		}
-		qsort(&lists->entries[first], end - first, sizeof lists->entries[0],
-		      kind == EXCLUDES_BELOW ? compare_rising : compare_falling);
-		lists->first[list / KINDS][kind] = first;
+		lists->first[list / KINDS][kind] = end;
+		for (; next < maker->entry_count && maker->entries[next].list == list; next++)
+			lists->entries[end++] = maker->entries[next].entry;
 		lists->entries[end++] =
 			(struct list_entry) { .threshold = kind == EXCLUDES_BELOW ? INFINITY
 										  : -INFINITY };
@@ -202,14 +201,12 @@ static struct gz_forest_lists *make_lists(const struct gz_forest *forest)
 		calloc(most + (size_t)GZ_MOVEMENT_FEATURES * KINDS, sizeof *lists->entries);
 	lists->leaves = calloc(trees * GZ_FOREST_LIST_LEAVES, sizeof *lists->leaves);
 	maker.entries = calloc(most, sizeof *maker.entries);
-	maker.places = calloc(most, sizeof *maker.places);
-	bool made = lists->entries && lists->leaves && maker.entries && maker.places;
+	bool made = lists->entries && lists->leaves && maker.entries;
 	for (; made && maker.tree < trees; maker.tree++)
 		made = take_list_tree(&maker);
 	if (made)
 		sort_lists(&maker);
 	free(maker.entries);
-	free(maker.places);
 	if (made)
 		return lists;
 	free_lists(lists);
