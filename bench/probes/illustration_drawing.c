@@ -173,22 +173,31 @@ static void aim_camera(struct drawing_state *state)
 	state->camera.eye[2] += 0.7;
 }
 
+/* The view of the camera; its planes are drawn anew. */
+static enum gz_result make_view(struct drawing_state *state, const struct drawing_request *request,
+				struct gz_ray_frame *rays, struct gz_stipple_view *out_view)
+{
+	enum gz_result result = drawing_planes_make(&state->mesh, state->world_per_mm,
+						    &state->camera, request->size, &state->planes);
+	if (result == GZ_OK)
+		result = gz_camera_rays(&state->camera, request->size[0], request->size[1], rays);
+	*out_view = (struct gz_stipple_view) { .rays = rays,
+					       .world_per_mm = state->world_per_mm,
+					       .tone = &state->planes.tone,
+					       .depth = &state->planes.depth,
+					       .ids = &state->planes.ids,
+					       .id = 1,
+					       .size_px = request->radius,
+					       .tolerance_px = GZ_STIPPLE_TOLERANCE_PX };
+	return result;
+}
+
 static enum gz_result choose_points(struct drawing_state *state,
 				    const struct drawing_request *request)
 {
 	struct gz_ray_frame rays;
-	enum gz_result result = drawing_planes_make(&state->mesh, state->world_per_mm,
-						    &state->camera, request->size, &state->planes);
-	if (result == GZ_OK)
-		result = gz_camera_rays(&state->camera, request->size[0], request->size[1], &rays);
-	const struct gz_stipple_view view = { .rays = &rays,
-					      .world_per_mm = state->world_per_mm,
-					      .tone = &state->planes.tone,
-					      .depth = &state->planes.depth,
-					      .ids = &state->planes.ids,
-					      .id = 1,
-					      .size_px = request->radius,
-					      .tolerance_px = GZ_STIPPLE_TOLERANCE_PX };
+	struct gz_stipple_view view;
+	enum gz_result result = make_view(state, request, &rays, &view);
 	state->discs.count = 0;
 	state->lines.count = 0;
 	const int64_t start_ns = gz_clock_now_ns();
@@ -271,6 +280,35 @@ static enum gz_result draw_sheet(struct drawing_state *state, const struct drawi
 	return result;
 }
 
+/* Turns the view by a degree at a time, and the light with it, and counts the points that appear
+ * and vanish. */
+static enum gz_result print_changes(struct drawing_state *state,
+				    const struct drawing_request *request)
+{
+	const size_t count = state->points.count;
+	bool *shown = calloc(count, sizeof *shown);
+	size_t shown_count = 0, appeared = 0, vanished = 0;
+	enum gz_result result = shown ? GZ_OK : GZ_ERR_NO_MEM;
+	for (int turn = 0; turn <= TURNS && result == GZ_OK; turn++) {
+		struct gz_ray_frame rays;
+		struct gz_stipple_view view;
+		result = make_view(state, request, &rays, &view);
+		for (size_t i = 0; i < count && result == GZ_OK; i++) {
+			const bool shows = gz_stipple_shows(&state->points, &view, i);
+			appeared += turn > 0 && shows && !shown[i];
+			vanished += turn > 0 && !shows && shown[i];
+			shown_count += turn > 0 && shows;
+			shown[i] = shows;
+		}
+		gz_camera_turn(&state->camera, 1);
+	}
+	if (result == GZ_OK)
+		printf("by degree of turning: shown %zu, appear %zu, vanish %zu\n",
+		       shown_count / TURNS, appeared / TURNS, vanished / TURNS);
+	free(shown);
+	return result;
+}
+
 static enum gz_result run_drawing(struct drawing_state *state,
 				  const struct drawing_request *request, const struct gz_log *log)
 {
@@ -288,6 +326,8 @@ static enum gz_result run_drawing(struct drawing_state *state,
 		result = draw_sheet(state, request, log);
 	if (result == GZ_OK)
 		print_tone(state);
+	if (result == GZ_OK && !request->hatch)
+		result = print_changes(state, request);
 	return result;
 }
 

@@ -187,29 +187,49 @@ static void add_ink(uint8_t ink[BLOCK], const float shares[BLOCK])
 	}
 }
 
+/* A disc as its drawing needs it, in units of ink. */
+struct disc_frame {
+	float middle, slope, most; /* ink at the centre, its fall with d², and its bound */
+};
+
 /* The share of a pixel that a disc covers falls linearly with the square of the distance, by
  * (r² - d²) / 2r + 1/2, which is about r - d + 1/2 at the rim. Its integral over the plane is pi r²
  * for r >= 1; below, the share at the centre would not reach 1, and 4 r / (r + 1)² restores it. */
+static struct disc_frame frame_of_disc(float r)
+{
+	const float most = r < 1 ? 255 * 4 * r / ((r + 1) * (r + 1)) : 255;
+	return (struct disc_frame) { most * (0.5F + r / 2), most / (2 * r), most };
+}
+
+/* The ink of a pixel, rounded. */
+static int rounded_ink(float ink, float most)
+{
+	const float within = ink < 0 ? 0 : ink > most ? most : ink;
+	return (int)(within + 0.5F);
+}
+
+/* Draws pixels [from, to) of a row; @p at_row is the ink below the centre. */
+static void draw_disc_row(uint8_t *row, struct row_range columns, float centre, float at_row,
+			  const struct disc_frame *frame)
+{
+	for (int x = columns.from; x < columns.to; x++) {
+		const float dx = (float)x - centre;
+		const int sum = row[x] + rounded_ink(at_row - frame->slope * dx * dx, frame->most);
+		row[x] = (uint8_t)(sum < 255 ? sum : 255);
+	}
+}
+
 static void draw_disc(struct gz_stipple_sheet *sheet, const void *marks, size_t number,
 		      struct row_range within)
 {
 	const struct gz_stipple_disc *disc = (const struct gz_stipple_disc *)marks + number;
-	const float r = disc->radius, reach = disc_reach(r);
-	const float strength = r < 1 ? 4 * r / ((r + 1) * (r + 1)) : 1;
-	const float slope = strength / (2 * r), middle = strength * (0.5F + r / 2);
+	const float reach = disc_reach(disc->radius);
+	const struct disc_frame frame = frame_of_disc(disc->radius);
 	const struct row_range columns = columns_between(sheet, disc->x - reach, disc->x + reach);
 	for (int y = within.from; y < within.to; y++) {
-		const float dy = (float)y - disc->y, at_row = middle - slope * dy * dy;
-		uint8_t *row = sheet->ink + (size_t)y * sheet->stride;
-		for (int x = columns.from; x < columns.to; x += BLOCK) {
-			float shares[BLOCK];
-			for (int i = 0; i < BLOCK; i++) {
-				const float dx = (float)(x + i) - disc->x;
-				const float share = at_row - slope * dx * dx;
-				shares[i] = share < 0 ? 0 : share > strength ? strength : share;
-			}
-			add_ink(row + x, shares);
-		}
+		const float dy = (float)y - disc->y;
+		draw_disc_row(sheet->ink + (size_t)y * sheet->stride, columns, disc->x,
+			      frame.middle - frame.slope * dy * dy, &frame);
 	}
 }
 
