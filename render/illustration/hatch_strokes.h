@@ -81,8 +81,8 @@ void gz_hatch_cross_directions(const struct gz_mesh *mesh, const float (*directi
  *
  * @param directions   of each vertex: along the strokes, mm of any length; the sign does not count;
  * 0 and NaN: no stroke passes
- * @param points       of this mesh; a step has more strokes the more points there are, and needs
- *                     about two for the square of its distance
+ * @param points       of this mesh; a step starts strokes from the first four for the square of its
+ *                     distance, or from all if there are fewer
  * @param distance_mm  of the last step, above 0; the mean distance of all strokes is about 1.1 of
  *                     it
  * @param[out] out_strokes  written on GZ_OK; the caller frees it with gz_hatch_strokes_free()

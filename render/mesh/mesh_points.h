@@ -55,7 +55,7 @@ struct gz_mesh_points {
  * @retval GZ_ERR_INVAL   @p count is above GZ_MESH_POINTS_MAX; not logged
  * @retval GZ_ERR_NO_MEM  not logged
  *
- * Memory: about 90 bytes for each point while it works, 12 afterwards; 8 for each triangle.
+ * Memory: about 140 bytes for each point while it works, 12 afterwards; 8 for each triangle.
  */
 enum gz_result gz_mesh_points_make(const struct gz_mesh *mesh, size_t count,
 				   struct gz_workers *workers, struct gz_mesh_points *out_points);
