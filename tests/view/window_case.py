@@ -25,6 +25,7 @@ SIZE = (480, 320)
 CROSS = (255, 64, 64)
 GROUND = (23, 26, 31)  # of a window without a scene
 LINE_HEIGHT = 40  # the caption at the top
+CORNER = (60, 200, SIZE[0], SIZE[1])  # where messages are
 CORNER_HEIGHT = 64  # the caption of the gaze at the bottom
 
 for tool in ("Xvfb", "xdotool"):
@@ -238,6 +239,12 @@ class WindowCase(unittest.TestCase):
             is_it(*picture.at(x, y)) for x in range(8, width - 10)
             for y in range(height - CORNER_HEIGHT, height - 8)
         )
+
+    def says_error(self, picture, place=CORNER):
+        """Whether there are red letters."""
+        left, top, right, bottom = place
+        pixels = (picture.at(x, y) for x in range(left, right) for y in range(top, bottom))
+        return sum(r > 200 and 60 < g < 130 and b < 110 for r, g, b in pixels) > 40
 
     def amber(self, picture):
         return self.corner_has(picture, lambda r, g, b: r > 180 and 100 < g < 220 and b < 120)

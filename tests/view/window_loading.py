@@ -14,11 +14,10 @@ import unittest
 
 from picture import PATIENCE_S, run
 from window_case import (
-    CORNER_HEIGHT, GAZEVIEW, GROUND, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
+    CORNER, CORNER_HEIGHT, GAZEVIEW, GROUND, LINE_HEIGHT, PLACE, SCENE, SCENES, SCREEN, SIZE, WindowCase,
 )
 from xserver import Screen, start_server
 
-CORNER = (60, 200, SIZE[0], SIZE[1])
 MIDDLE = (60, 80, 420, 260)
 
 
@@ -85,12 +84,6 @@ READABLE = [what for what in BAD if what != "no such file"]
 
 
 class WindowLoading(WindowCase):
-    def says_error(self, picture, place=CORNER):
-        """Whether there are red letters."""
-        left, top, right, bottom = place
-        pixels = (picture.at(x, y) for x in range(left, right) for y in range(top, bottom))
-        return sum(r > 200 and 60 < g < 130 and b < 110 for r, g, b in pixels) > 40
-
     def welcomes(self, picture):
         """Whether there is text on a dark ground in the middle."""
         letters = sum(picture.at(x, y)[0] > 120 for x in range(MIDDLE[0], MIDDLE[2])
