@@ -27,6 +27,7 @@ static inline enum gz_event gz_classify_event_of(enum gz_forest_class learned)
 {
 	return learned == GZ_FOREST_SACCADE   ? GZ_EVENT_SACCADE
 	       : learned == GZ_FOREST_PURSUIT ? GZ_EVENT_PURSUIT
+	       : learned == GZ_FOREST_RINGING ? GZ_EVENT_OSCILLATION
 					      : GZ_EVENT_FIXATION;
 }
 

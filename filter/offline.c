@@ -115,12 +115,12 @@ struct intervals {
 /* Finish the last interval. */
 static void close_interval(struct intervals *intervals, int64_t end_ns)
 {
-	static const enum gz_offline_label labels[GZ_WHOLE_CLASSES] = {
+	static const enum gz_offline_label labels[GZ_FOREST_CLASSES] = {
 		[GZ_FOREST_FIXATION] = GZ_OFFLINE_FIXATION,
 		[GZ_FOREST_SACCADE] = GZ_OFFLINE_SACCADE,
 		[GZ_FOREST_PURSUIT] = GZ_OFFLINE_PURSUIT,
 		[GZ_FOREST_NOISE] = GZ_OFFLINE_LOST,
-		[GZ_WHOLE_RINGING] = GZ_OFFLINE_OSCILLATION,
+		[GZ_FOREST_RINGING] = GZ_OFFLINE_OSCILLATION,
 	};
 	if (intervals->count == 0)
 		return;

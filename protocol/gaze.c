@@ -15,6 +15,8 @@ const char *gz_event_name(enum gz_event event)
 		return "blink";
 	case GZ_EVENT_LOST:
 		return "lost";
+	case GZ_EVENT_OSCILLATION:
+		return "oscillation";
 	case GZ_EVENT_COUNT:
 		break;
 	}

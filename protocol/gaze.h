@@ -27,11 +27,12 @@ enum gz_event {
 	GZ_EVENT_PURSUIT,
 	GZ_EVENT_BLINK,
 	GZ_EVENT_LOST,
+	GZ_EVENT_OSCILLATION, /**< the eye rings after a saccade; only as a certain label */
 	GZ_EVENT_COUNT,
 };
 
-/** "fixation", "saccade", "pursuit", "blink" or "lost"; "unknown" for a value outside the enum.
- * Static text. */
+/** "fixation", "saccade", "pursuit", "blink", "lost" or "oscillation"; "unknown" for a value
+ * outside the enum. Static text. */
 const char *gz_event_name(enum gz_event event);
 
 /** One eye of a sample. The fields are float because "%.9g" in the gaze log keeps a float exactly.

@@ -24,7 +24,7 @@
 #include "filter/classifier/whole.h"
 #include "sim/random.h"
 
-enum { FEATURES_MAX = GZ_WHOLE_FEATURES, CLASSES_MAX = GZ_WHOLE_CLASSES };
+enum { FEATURES_MAX = GZ_WHOLE_FEATURES, CLASSES_MAX = GZ_FOREST_CLASSES };
 enum { BINS_MAX = 256, LEAVES_MAX = 64 };
 enum { NODES_MAX = 2 * LEAVES_MAX, TREES_MAX = 1024, TRACKS_MAX = 2048, FOLDS_MAX = 32 };
 enum { FOLDS_WITHOUT_FILMS = 6 };
@@ -38,6 +38,7 @@ struct settings {
 	double certain; /* 1: learn the label of 8 ms ago, 0: that of the sample itself */
 	double again;   /* 1: measure the scores of an earlier run with this tag */
 	double whole;   /* 1: learn from later samples too, and the ringing after a saccade */
+	double rings;   /* 1: learn the ringing after a saccade */
 	double trees, leaves, depth, rate, lambda, bins;
 	double rows, columns; /* parts for each tree */
 	double least;         /* least weight of a leaf */
@@ -49,6 +50,7 @@ struct settings {
 	double folds; /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
 			 each of several films and persons */
 	double thin;  /* learn from every so many samples only: neighbours are alike */
+	double dense; /* 1: but from all of Andersson et al., each with so much less weight */
 	double saccade, pursuit, noise; /* added to the scores of these classes */
 	double seed, tag, only_fold;
 };
@@ -67,6 +69,7 @@ static const struct {
 	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0), KEY(ringing, 1),   KEY(folds, 1),
 	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),   KEY(noise, 0),     KEY(tag, 0),
 	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),     KEY(thin, 1),      KEY(altered, 0),
+	KEY(rings, 0),      KEY(dense, 0),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -207,14 +210,20 @@ static int8_t class_of(int label)
 	}
 }
 
+/* Whether ringing after a saccade is a class of its own. */
+static bool knows_ringing(const struct training *t)
+{
+	return t->class_count == GZ_FOREST_CLASSES;
+}
+
 /* The class of a sample. While the eye rings after a saccade, it is that of what follows, unless
  * ringing is a class of its own. */
 static int8_t class_at(const struct training *t, const int16_t *numbers, size_t index, size_t count,
 		       int person)
 {
 	const int16_t *here = numbers + index * LABEL_NUMBERS;
-	if (t->settings.whole > 0 && here[1 + person] == GZ_HUMAN_GLISSADE)
-		return GZ_WHOLE_RINGING;
+	if (knows_ringing(t) && here[1 + person] == GZ_HUMAN_GLISSADE)
+		return GZ_FOREST_RINGING;
 	size_t i = index;
 	while (i < count && numbers[i * LABEL_NUMBERS] == here[0] &&
 	       numbers[i * LABEL_NUMBERS + 1 + person] == GZ_HUMAN_GLISSADE)
@@ -263,11 +272,14 @@ static void read_rows(struct training *t, const char *folder)
 		const struct track *track = &t->track[n[0]];
 		struct row *row = &t->row[t->row_count];
 		size_t back = t->settings.certain > 0 ? (size_t)(8 / track->period_ms + 0.1) : 0;
+		const bool dense = t->settings.dense > 0 && track->andersson;
 		row->features = features + i * FEATURES_MAX;
 		row->index = (int)i;
 		row->track = n[0];
 		row->weight = weight_of(t, track);
-		row->learned = i % (size_t)t->settings.thin == 0;
+		row->learned = dense || i % (size_t)t->settings.thin == 0;
+		if (dense)
+			row->weight /= (float)t->settings.thin;
 		if (row->weight <= 0 || (!row->learned && !is_original(track)))
 			continue;
 		bool known = i >= back && numbers[(i - back) * LABEL_NUMBERS] == n[0];
@@ -278,7 +290,7 @@ static void read_rows(struct training *t, const char *folder)
 				      : 0;
 		}
 		/* The coders of GazeCom call both a saccade. */
-		row->either = t->settings.whole > 0 && !track->andersson && !track->simulated;
+		row->either = knows_ringing(t) && !track->andersson && !track->simulated;
 		row->valid = known && numbers[(i - back) * LABEL_NUMBERS + 3] != 0;
 		row->learned = row->learned && (row->valid || !track->altered);
 		if (known && numbers[(i - back) * LABEL_NUMBERS + 1] == GZ_HUMAN_GLISSADE)
@@ -518,6 +530,9 @@ static const struct node *leaf_of(const struct tree *tree, const uint8_t *bins)
 
 enum { KINDS = GZ_LABELLED_STIMULI, FIGURES_EVERY = 20 };
 
+/* The classes that the coders of GazeCom know: all but ringing. */
+enum { FILM_CLASSES = GZ_FOREST_RINGING };
+
 /* What is compared with each person. */
 static const struct {
 	const char *name;
@@ -527,12 +542,12 @@ static const struct {
 	{ "fixation", GZ_FOREST_FIXATION, GZ_HUMAN_FIXATION },
 	{ "pursuit", GZ_FOREST_PURSUIT, GZ_HUMAN_PURSUIT },
 	{ "blink", GZ_FOREST_NOISE, GZ_HUMAN_BLINK },
-	{ "ringing", GZ_WHOLE_RINGING, GZ_HUMAN_GLISSADE },
+	{ "ringing", GZ_FOREST_RINGING, GZ_HUMAN_GLISSADE },
 };
 enum { COMPARED_COUNT = sizeof COMPARED / sizeof COMPARED[0] };
 
 struct figures {
-	struct gz_agreement film[GZ_FOREST_CLASSES]; /* GazeCom */
+	struct gz_agreement film[FILM_CLASSES]; /* GazeCom */
 	struct gz_agreement coder[KINDS][2][COMPARED_COUNT];
 };
 
@@ -574,7 +589,9 @@ static void decide_classes(const struct training *t, uint8_t *out_class)
 		if (i == 0 || row->track != row[-1].track)
 			memory = (struct gz_forest_memory) { .any = false };
 		for (int k = 0; k < GZ_FOREST_CLASSES; k++)
-			scores[k] = quantised(t->score[i][k] + (float)added_score(t, k));
+			scores[k] = k < t->class_count
+					    ? quantised(t->score[i][k] + (float)added_score(t, k))
+					    : GZ_FOREST_NEVER;
 		out_class[i] = (uint8_t)gz_forest_label(&memory, row->valid ? scores : NULL, false);
 	}
 }
@@ -588,8 +605,8 @@ static void add_figures(const struct training *t, const uint8_t *class, struct f
 		if (!is_measured_row(t, i) || !row->human[0])
 			continue;
 		const int named =
-			class[i] == GZ_WHOLE_RINGING ? (int)GZ_FOREST_SACCADE : (int)class[i];
-		for (int k = 0; k < GZ_FOREST_CLASSES && !track->andersson; k++)
+			class[i] == GZ_FOREST_RINGING ? (int)GZ_FOREST_SACCADE : (int)class[i];
+		for (int k = 0; k < FILM_CLASSES && !track->andersson; k++)
 			gz_agreement_add(&figures->film[k], named == k, row->label[0] == k);
 		for (int p = 0; p < 2 && track->andersson; p++)
 			for (int c = 0; c < COMPARED_COUNT; c++)
@@ -602,9 +619,9 @@ static void add_figures(const struct training *t, const uint8_t *class, struct f
 static void print_figures(const struct figures *figures)
 {
 	printf("GazeCom F1");
-	static const char *const names[GZ_FOREST_CLASSES] = { "fixation", "saccade", "pursuit",
-							      "noise" };
-	for (int k = 0; k < GZ_FOREST_CLASSES; k++) {
+	static const char *const names[FILM_CLASSES] = { "fixation", "saccade", "pursuit",
+							 "noise" };
+	for (int k = 0; k < FILM_CLASSES; k++) {
 		const struct gz_agreement *a = &figures->film[k];
 		printf(" %s %.3f", names[k], 2 * a->both / fmax(a->ours + a->theirs, 1));
 	}
@@ -634,14 +651,14 @@ static void decode_track(const struct training *t, int begin, int end, uint8_t *
 {
 	const size_t count = (size_t)(end - begin);
 	struct gz_movement_input *input = calloc(count, sizeof *input);
-	int32_t(*scores)[GZ_WHOLE_CLASSES] = calloc(count, sizeof *scores);
+	int32_t(*scores)[GZ_FOREST_CLASSES] = calloc(count, sizeof *scores);
 	bool good = input && scores;
 	for (size_t i = 0; good && i < count; i++) {
 		const int row = begin + (int)i;
 		input[i].time_ns =
 			(int64_t)(t->track[t->row[row].track].period_ms * 1e6) * (int64_t)i;
 		input[i].valid = t->row[row].valid;
-		for (int k = 0; k < GZ_WHOLE_CLASSES; k++)
+		for (int k = 0; k < GZ_FOREST_CLASSES; k++)
 			scores[i][k] = quantised(t->score[row][k] + (float)added_score(t, k));
 	}
 	if (good)
@@ -650,7 +667,7 @@ static void decode_track(const struct training *t, int begin, int end, uint8_t *
 		const struct gz_whole_costs costs = { CHANGE_MS[c / PURSUITS] * 1000,
 						      PURSUIT_MS[c % PURSUITS] * 1000,
 						      { 0 } };
-		good = gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count,
+		good = gz_whole_decode(input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count,
 				       &costs, class[c] + begin) == GZ_OK;
 	}
 	free(input);
@@ -736,9 +753,9 @@ static void set_gradient(struct training *t, int row)
 			g[r->label[n]] -= 0.5f * r->weight;
 		}
 	if (r->either && r->label[0] == GZ_FOREST_SACCADE) {
-		const double saccade = p[GZ_FOREST_SACCADE], ringing = p[GZ_WHOLE_RINGING];
+		const double saccade = p[GZ_FOREST_SACCADE], ringing = p[GZ_FOREST_RINGING];
 		g[GZ_FOREST_SACCADE] = (float)(-weight * saccade / (saccade + ringing));
-		g[GZ_WHOLE_RINGING] = (float)(-weight * ringing / (saccade + ringing));
+		g[GZ_FOREST_RINGING] = (float)(-weight * ringing / (saccade + ringing));
 	}
 	for (int k = 0; k < t->class_count; k++) {
 		p[k] /= sum;
@@ -852,11 +869,6 @@ static const char *name_of(const struct training *t)
 	return t->settings.whole > 0 ? "whole" : t->settings.certain > 0 ? "certain" : "at_once";
 }
 
-static const char *classes_of(const struct training *t)
-{
-	return t->settings.whole > 0 ? "GZ_WHOLE_CLASSES" : "GZ_FOREST_CLASSES";
-}
-
 static void write_provenance(const struct training *t, FILE *file)
 {
 	struct settings settings = t->settings;
@@ -922,7 +934,7 @@ static void write_nodes(const struct training *t, FILE *file)
 
 static void write_leaves(const struct training *t, FILE *file)
 {
-	fprintf(file, "static const int16_t %s_leaves[][%s] = {\n", name_of(t), classes_of(t));
+	fprintf(file, "static const int16_t %s_leaves[][%d] = {\n", name_of(t), t->class_count);
 	long line_start = ftell(file);
 	for (int n = 0; n < t->tree_count; n++)
 		for (int i = 0; i < t->tree[n].node_count; i++) {
@@ -965,7 +977,7 @@ static void write_forest(const struct training *t, const char *folder)
 	write_nodes(t, file);
 	write_leaves(t, file);
 	write_trees(t, file);
-	fprintf(file, "static const int32_t %s_base[%s] = {", name_of(t), classes_of(t));
+	fprintf(file, "static const int32_t %s_base[%d] = {", name_of(t), t->class_count);
 	for (int k = 0; k < t->class_count; k++)
 		fprintf(file, "%s %d", k > 0 ? "," : "", base_of(t, k));
 	fprintf(file, " };\n");
@@ -1162,7 +1174,8 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	t.feature_count = t.settings.whole > 0 ? GZ_WHOLE_FEATURES : GZ_MOVEMENT_FEATURES;
-	t.class_count = t.settings.whole > 0 ? GZ_WHOLE_CLASSES : GZ_FOREST_CLASSES;
+	t.class_count = t.settings.whole > 0 || t.settings.rings > 0 ? GZ_FOREST_CLASSES
+								     : GZ_FOREST_RINGING;
 	for (int i = 2; i < argc; i++)
 		if (is_ban(argv[i])) {
 			ban_features(&t, argv[i] + strlen(WITHOUT));

@@ -67,19 +67,27 @@ static inline void score_features(const struct gz_forest *forest, const float *f
 void gz_forest_score(const struct gz_forest *forest, const float features[GZ_MOVEMENT_FEATURES],
 		     int32_t out_scores[GZ_FOREST_CLASSES])
 {
-	score_features(forest, features, GZ_FOREST_CLASSES, out_scores);
+	if (forest->class_count == GZ_FOREST_CLASSES) {
+		score_features(forest, features, GZ_FOREST_CLASSES, out_scores);
+		return;
+	}
+	score_features(forest, features, GZ_FOREST_RINGING, out_scores);
+	out_scores[GZ_FOREST_RINGING] = GZ_FOREST_NEVER;
 }
 
-void gz_whole_score(const float features[GZ_WHOLE_FEATURES], int32_t out_scores[GZ_WHOLE_CLASSES])
+void gz_whole_score(const float features[GZ_WHOLE_FEATURES], int32_t out_scores[GZ_FOREST_CLASSES])
 {
-	score_features(&gz_forest_whole, features, GZ_WHOLE_CLASSES, out_scores);
+	score_features(&gz_forest_whole, features, GZ_FOREST_CLASSES, out_scores);
 }
 
-enum gz_forest_class gz_forest_best(const int32_t scores[GZ_FOREST_CLASSES])
+/* The class of the greatest score, the first one of several, after @p last. */
+static enum gz_forest_class best_class(const int32_t scores[GZ_FOREST_CLASSES],
+				       enum gz_forest_class last)
 {
+	const bool may_ring = last == GZ_FOREST_SACCADE || last == GZ_FOREST_RINGING;
 	int best = 0;
 	for (int k = 1; k < GZ_FOREST_CLASSES; k++)
-		if (scores[k] > scores[best])
+		if (scores[k] > scores[best] && (k != GZ_FOREST_RINGING || may_ring))
 			best = k;
 	return (enum gz_forest_class)best;
 }
@@ -102,7 +110,8 @@ static enum gz_forest_class without_pursuit(enum gz_forest_class class, bool sti
 enum gz_forest_class gz_forest_label(struct gz_forest_memory *memory, const int32_t *scores,
 				     bool still_scene)
 {
-	const enum gz_forest_class best = scores ? gz_forest_best(scores) : GZ_FOREST_NOISE;
+	const enum gz_forest_class best =
+		scores ? best_class(scores, memory->last) : GZ_FOREST_NOISE;
 	enum gz_forest_class now = without_pursuit(best, still_scene);
 	const enum gz_forest_class last = without_pursuit(memory->last, still_scene);
 	const bool slow = memory->any && is_slow_class(now) && is_slow_class(last);

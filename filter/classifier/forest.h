@@ -23,12 +23,16 @@ enum gz_forest_class {
 	GZ_FOREST_FIXATION,
 	GZ_FOREST_SACCADE,
 	GZ_FOREST_PURSUIT,
-	GZ_FOREST_NOISE, /**< not the eye: a lid in front of it, or a bad measurement */
+	GZ_FOREST_NOISE,   /**< not the eye: a lid in front of it, or a bad measurement */
+	GZ_FOREST_RINGING, /**< the eye rings after a saccade; not every forest knows it */
 	GZ_FOREST_CLASSES,
 };
 
 /** One unit of a score: 1/4096 of a natural logarithm of odds. */
 #define GZ_FOREST_UNIT (1.0 / 4096)
+
+/** The score of a class that a forest does not know. */
+#define GZ_FOREST_NEVER (INT32_MIN / 2)
 
 /** A question, or a leaf, which is its own successor. */
 struct gz_forest_node {
@@ -50,7 +54,8 @@ struct gz_forest {
 	size_t tree_count;
 	const struct gz_forest_tree *tree;
 	const struct gz_forest_node *node;
-	const int16_t *leaf;    /**< for each leaf the scores of all classes, GZ_FOREST_UNIT */
+	int class_count;        /**< that it knows, the first ones of enum gz_forest_class */
+	const int16_t *leaf;    /**< for each leaf the scores of these classes, GZ_FOREST_UNIT */
 	const int32_t *base;    /**< a score for each class, added to the sums of the leaves */
 	uint64_t training_hash; /**< of the scores that the training gave, for a test */
 };
@@ -73,9 +78,6 @@ extern const struct gz_forest gz_forest_certain;
 void gz_forest_score(const struct gz_forest *forest, const float features[GZ_MOVEMENT_FEATURES],
 		     int32_t out_scores[GZ_FOREST_CLASSES]);
 
-/** The class of the greatest score; the first one of several. */
-enum gz_forest_class gz_forest_best(const int32_t scores[GZ_FOREST_CLASSES]);
-
 /** The newest label of one sample after the other. Zero-initialised is the start. */
 struct gz_forest_memory {
 	enum gz_forest_class last;
@@ -83,7 +85,8 @@ struct gz_forest_memory {
 };
 
 /**
- * Label one sample by the scores of a forest, without flicker between fixation and pursuit.
+ * Label one sample by the scores of a forest, without flicker between fixation and pursuit. Ringing
+ * follows a saccade only.
  *
  * @param scores       gz_forest_score(); NULL if nothing was measured: noise
  * @param still_scene  nothing moves in the scene, so there is no pursuit

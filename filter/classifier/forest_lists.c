@@ -17,18 +17,20 @@ struct list_entry {
  * no feature passes ends each list. */
 enum { EXCLUDES_BELOW, EXCLUDES_ABOVE, KINDS };
 
-/* The scores of a leaf. */
+/* Room for the classes side by side, so that they are added at once: a power of two. */
+enum { CLASS_ROOM = 8 };
+
+/* The scores of a leaf; 0 beyond the classes that the forest knows. */
 struct leaf_scores {
-	int16_t of[GZ_FOREST_CLASSES];
+	int16_t of[CLASS_ROOM];
 };
 
-/* All classes side by side, so that they are added at once. */
 typedef int16_t class_scores __attribute__((vector_size(sizeof(struct leaf_scores))));
-typedef int32_t class_sums __attribute__((vector_size(sizeof(int32_t) * GZ_FOREST_CLASSES)));
+typedef int32_t class_sums __attribute__((vector_size(sizeof(int32_t) * CLASS_ROOM)));
 
 struct gz_forest_lists {
 	size_t tree_count;
-	int32_t base[GZ_FOREST_CLASSES];
+	int32_t base[CLASS_ROOM];
 	uint32_t first[GZ_MOVEMENT_FEATURES][KINDS]; /* of each list, in entries */
 	struct list_entry *entries;
 	struct leaf_scores *leaves; /* GZ_FOREST_LIST_LEAVES for each tree, in the order in which
@@ -90,8 +92,9 @@ static void take_list_leaf(struct list_maker *maker, const struct gz_forest_tree
 			   const struct gz_forest_node *leaf)
 {
 	size_t to = maker->tree * (size_t)GZ_FOREST_LIST_LEAVES + maker->leaf_count++;
-	size_t from = (tree->leaf + leaf->leaf) * (size_t)GZ_FOREST_CLASSES;
-	memcpy(&maker->lists->leaves[to], maker->forest->leaf + from, sizeof(struct leaf_scores));
+	size_t classes = (size_t)maker->forest->class_count;
+	const int16_t *scores = maker->forest->leaf + (tree->leaf + leaf->leaf) * classes;
+	memcpy(maker->lists->leaves[to].of, scores, classes * sizeof scores[0]);
 }
 
 /* Bits @p first to @p end - 1. */
@@ -196,7 +199,8 @@ static struct gz_forest_lists *make_lists(const struct gz_forest *forest)
 		return NULL;
 	}
 	lists->tree_count = trees;
-	memcpy(lists->base, forest->base, sizeof lists->base);
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++)
+		lists->base[k] = k < forest->class_count ? forest->base[k] : GZ_FOREST_NEVER;
 	lists->entries =
 		calloc(most + (size_t)GZ_MOVEMENT_FEATURES * KINDS, sizeof *lists->entries);
 	lists->leaves = calloc(trees * GZ_FOREST_LIST_LEAVES, sizeof *lists->leaves);
@@ -259,5 +263,5 @@ void gz_forest_lists_score(const struct gz_forest_lists *lists,
 		memcpy(&scores, &leaves[__builtin_ctz(left[t])], sizeof scores);
 		sums += __builtin_convertvector(scores, class_sums);
 	}
-	memcpy(out_scores, &sums, sizeof sums);
+	memcpy(out_scores, &sums, GZ_FOREST_CLASSES * sizeof out_scores[0]);
 }

@@ -21,7 +21,7 @@
 struct gz_forest_lists;
 
 /**
- * The lists of a forest, made by the first call for it, which allocates about 150 KB and takes
+ * The lists of a forest, made by the first call for it, which allocates about 200 KB and takes
  * some milliseconds. They stay until the program ends.
  *
  * @param forest  gz_forest_at_once or gz_forest_certain

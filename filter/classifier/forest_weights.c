@@ -12,10 +12,11 @@
 #include "filter/classifier/forest_certain.inc"
 #include "filter/classifier/forest_whole.inc"
 
-#define FOREST(name)                                                                      \
-	{                                                                                 \
-		sizeof name##_trees / sizeof name##_trees[0], name##_trees, name##_nodes, \
-			name##_leaves[0], name##_base, name##_hash,                       \
+#define FOREST(name)                                                                               \
+	{                                                                                          \
+		sizeof name##_trees / sizeof name##_trees[0], name##_trees, name##_nodes,          \
+			sizeof name##_base / sizeof name##_base[0], name##_leaves[0], name##_base, \
+			name##_hash,                                                               \
 	}
 
 const struct gz_forest gz_forest_at_once = FOREST(at_once);

@@ -103,10 +103,10 @@ static const double USUAL_S = 4;
 enum { SHARE_ROUNDS = 10 };
 
 /* Whether a sample is likeliest to be a fixation or a pursuit. */
-static bool is_slow(const int32_t scores[GZ_WHOLE_CLASSES])
+static bool is_slow(const int32_t scores[GZ_FOREST_CLASSES])
 {
 	int best = 0;
-	for (int k = 1; k < GZ_WHOLE_CLASSES; k++)
+	for (int k = 1; k < GZ_FOREST_CLASSES; k++)
 		best = scores[k] > scores[best] ? k : best;
 	return best == GZ_FOREST_FIXATION || best == GZ_FOREST_PURSUIT;
 }
@@ -125,14 +125,14 @@ static double log_odds(double share)
 }
 
 /* How likely a pursuit is, rather than a fixation, if its score is greater by @p lead. */
-static double pursuit_part(const int32_t scores[GZ_WHOLE_CLASSES], int32_t lead)
+static double pursuit_part(const int32_t scores[GZ_FOREST_CLASSES], int32_t lead)
 {
 	const double ahead = GZ_FOREST_UNIT * ((double)scores[GZ_FOREST_PURSUIT] + lead -
 					       scores[GZ_FOREST_FIXATION]);
 	return 1 / (1 + gz_portable_exp(-fmax(-50, fmin(50, ahead))));
 }
 
-static void lead_pursuit(int32_t scores[GZ_WHOLE_CLASSES], int32_t lead)
+static void lead_pursuit(int32_t scores[GZ_FOREST_CLASSES], int32_t lead)
 {
 	int32_t *fixation = &scores[GZ_FOREST_FIXATION], *pursuit = &scores[GZ_FOREST_PURSUIT];
 	const int32_t before = *fixation > *pursuit ? *fixation : *pursuit;
@@ -142,7 +142,7 @@ static void lead_pursuit(int32_t scores[GZ_WHOLE_CLASSES], int32_t lead)
 	*pursuit -= more;
 }
 
-void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_WHOLE_CLASSES],
+void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_FOREST_CLASSES],
 		    size_t count)
 {
 	int32_t lead = 0;
@@ -204,8 +204,8 @@ static size_t judge_loss(const struct gz_movement_input *input, size_t count, si
 /* The best sequences up to the present sample. */
 struct decoder {
 	const struct gz_whole_costs *costs;
-	int64_t best[GZ_WHOLE_CLASSES];    /* relative to the best one; GZ_FOREST_UNIT us */
-	uint8_t (*from)[GZ_WHOLE_CLASSES]; /* of each sample and class: the class before it */
+	int64_t best[GZ_FOREST_CLASSES];    /* relative to the best one; GZ_FOREST_UNIT us */
+	uint8_t (*from)[GZ_FOREST_CLASSES]; /* of each sample and class: the class before it */
 };
 
 /* Less than any sum of scores. */
@@ -222,15 +222,15 @@ static int64_t cost_of(const struct gz_whole_costs *costs, int from, int to)
 }
 
 /* Find the best way to each class. @param apart  something is missing before this sample */
-static void change_labels(struct decoder *decoder, bool apart, uint8_t from[GZ_WHOLE_CLASSES])
+static void change_labels(struct decoder *decoder, bool apart, uint8_t from[GZ_FOREST_CLASSES])
 {
-	int64_t next[GZ_WHOLE_CLASSES];
-	for (int to = 0; to < GZ_WHOLE_CLASSES; to++) {
+	int64_t next[GZ_FOREST_CLASSES];
+	for (int to = 0; to < GZ_FOREST_CLASSES; to++) {
 		next[to] = IMPOSSIBLE;
 		from[to] = GZ_FOREST_NOISE;
-		for (int k = 0; k < GZ_WHOLE_CLASSES; k++) {
-			bool rings = to == GZ_WHOLE_RINGING;
-			if (rings && (apart || (k != GZ_WHOLE_RINGING && k != GZ_FOREST_SACCADE)))
+		for (int k = 0; k < GZ_FOREST_CLASSES; k++) {
+			bool rings = to == GZ_FOREST_RINGING;
+			if (rings && (apart || (k != GZ_FOREST_RINGING && k != GZ_FOREST_SACCADE)))
 				continue;
 			int64_t sum =
 				decoder->best[k] - (apart ? 0 : cost_of(decoder->costs, k, to));
@@ -245,10 +245,10 @@ static void change_labels(struct decoder *decoder, bool apart, uint8_t from[GZ_W
 
 /* Add what a sample says for each class, and keep the numbers small. */
 static void add_evidence(struct decoder *decoder, enum known known,
-			 const int32_t scores[GZ_WHOLE_CLASSES], int64_t step_us)
+			 const int32_t scores[GZ_FOREST_CLASSES], int64_t step_us)
 {
 	int64_t most = INT64_MIN;
-	for (int k = 0; k < GZ_WHOLE_CLASSES; k++) {
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++) {
 		if (known == MEASURED)
 			decoder->best[k] +=
 				((int64_t)scores[k] + decoder->costs->added[k]) * step_us;
@@ -256,7 +256,7 @@ static void add_evidence(struct decoder *decoder, enum known known,
 			decoder->best[k] = IMPOSSIBLE;
 		most = decoder->best[k] > most ? decoder->best[k] : most;
 	}
-	for (int k = 0; k < GZ_WHOLE_CLASSES; k++) {
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++) {
 		decoder->best[k] -= most;
 		decoder->best[k] = decoder->best[k] < IMPOSSIBLE ? IMPOSSIBLE : decoder->best[k];
 	}
@@ -265,7 +265,7 @@ static void add_evidence(struct decoder *decoder, enum known known,
 static void read_backwards(const struct decoder *decoder, size_t count, uint8_t *out_class)
 {
 	int now = 0;
-	for (int k = 1; k < GZ_WHOLE_CLASSES; k++)
+	for (int k = 1; k < GZ_FOREST_CLASSES; k++)
 		now = decoder->best[k] > decoder->best[now] ? k : now;
 	for (size_t i = count; i > 0; i--) {
 		out_class[i - 1] = (uint8_t)now;
@@ -274,7 +274,7 @@ static void read_backwards(const struct decoder *decoder, size_t count, uint8_t 
 }
 
 enum gz_result gz_whole_decode(const struct gz_movement_input *input,
-			       const int32_t (*scores)[GZ_WHOLE_CLASSES], size_t count,
+			       const int32_t (*scores)[GZ_FOREST_CLASSES], size_t count,
 			       const struct gz_whole_costs *costs, uint8_t *out_class)
 {
 	struct decoder decoder = { .costs = costs };
@@ -308,7 +308,7 @@ enum gz_result gz_whole_decode(const struct gz_movement_input *input,
 
 static void score_row(void *user, size_t index, const float features[GZ_WHOLE_FEATURES])
 {
-	int32_t(*scores)[GZ_WHOLE_CLASSES] = user;
+	int32_t(*scores)[GZ_FOREST_CLASSES] = user;
 	gz_whole_score(features, scores[index]);
 }
 
@@ -316,14 +316,14 @@ enum gz_result gz_whole_label(const struct gz_display *display,
 			      const struct gz_movement_input *input, size_t count,
 			      uint8_t *out_class)
 {
-	int32_t(*scores)[GZ_WHOLE_CLASSES] = calloc(count ? count : 1, sizeof *scores);
+	int32_t(*scores)[GZ_FOREST_CLASSES] = calloc(count ? count : 1, sizeof *scores);
 	if (!scores)
 		return GZ_ERR_NO_MEM;
 	const struct gz_whole_rows rows = { scores, score_row };
 	enum gz_result result = gz_whole_features(display, input, count, &rows);
 	if (result == GZ_OK) {
 		gz_whole_adapt(input, scores, count);
-		result = gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count,
+		result = gz_whole_decode(input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count,
 					 &gz_whole_preset_costs, out_class);
 	}
 	free(scores);

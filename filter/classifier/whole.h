@@ -2,10 +2,9 @@
  * @file
  * What the eye did at each sample of a whole recording. Here the features of movement.h are taken
  * twice, of what came before a sample and, in reversed time, of what came after it, and a forest
- * reads both. It also knows the ringing of the eye after a saccade. Its scores are then decoded
- * together: the most likely sequence of labels, in which each change of the label has a cost
- * (Viterbi, "Error bounds for convolutional codes and an asymptotically optimum decoding
- * algorithm", IEEE Transactions on Information Theory 13, 1967).
+ * reads both. Its scores are then decoded together: the most likely sequence of labels, in which
+ * each change of the label has a cost (Viterbi, "Error bounds for convolutional codes and an
+ * asymptotically optimum decoding algorithm", IEEE Transactions on Information Theory 13, 1967).
  *
  * The result is the same on every machine: what follows the features is integers.
  */
@@ -22,12 +21,6 @@
 
 /** Number of features of a sample: those of what came before, then those of what came after. */
 #define GZ_WHOLE_FEATURES (2 * GZ_MOVEMENT_FEATURES)
-
-/** The class beyond those of enum gz_forest_class: the eye rings after a saccade. */
-#define GZ_WHOLE_RINGING GZ_FOREST_CLASSES
-
-/** Number of classes. */
-#define GZ_WHOLE_CLASSES (GZ_WHOLE_RINGING + 1)
 
 /** Takes the features of the samples, in order. */
 struct gz_whole_rows {
@@ -46,19 +39,19 @@ enum gz_result gz_whole_features(const struct gz_display *display,
 				 const struct gz_movement_input *input, size_t count,
 				 const struct gz_whole_rows *rows);
 
-/** What the eye does at a sample, from its features of both directions; GZ_WHOLE_CLASSES. */
+/** What the eye does at a sample, from its features of both directions. */
 extern const struct gz_forest gz_forest_whole;
 
 /** As gz_forest_score(), for gz_forest_whole. */
-void gz_whole_score(const float features[GZ_WHOLE_FEATURES], int32_t out_scores[GZ_WHOLE_CLASSES]);
+void gz_whole_score(const float features[GZ_WHOLE_FEATURES], int32_t out_scores[GZ_FOREST_CLASSES]);
 
 /** Costs of a sequence of labels, as times: a change costs as much as a label that is e times less
  *  likely over this time. */
 struct gz_whole_costs {
-	int64_t change_us;               /**< any change of the label */
-	int64_t pursuit_us;              /**< a change between fixation and pursuit */
-	int32_t added[GZ_WHOLE_CLASSES]; /**< is added to the scores of the classes, GZ_FOREST_UNIT
-					  */
+	int64_t change_us;                /**< any change of the label */
+	int64_t pursuit_us;               /**< a change between fixation and pursuit */
+	int32_t added[GZ_FOREST_CLASSES]; /**< is added to the scores of the classes, GZ_FOREST_UNIT
+					   */
 };
 
 /** The costs that gz_whole_label() uses. Chosen on recordings that the forest did not learn from
@@ -72,11 +65,11 @@ extern const struct gz_whole_costs gz_whole_preset_costs;
  *
  * @param input   @p count samples, each newer than the last; places are not read
  * @param scores  of each sample
- * @param[out] out_class  of each sample, below GZ_WHOLE_CLASSES
+ * @param[out] out_class  of each sample, below GZ_FOREST_CLASSES
  * @retval GZ_ERR_NO_MEM  no memory
  */
 enum gz_result gz_whole_decode(const struct gz_movement_input *input,
-			       const int32_t (*scores)[GZ_WHOLE_CLASSES], size_t count,
+			       const int32_t (*scores)[GZ_FOREST_CLASSES], size_t count,
 			       const struct gz_whole_costs *costs, uint8_t *out_class);
 
 /** Losses that are shorter, between two measured samples, are no blinks; as pipeline.dropout_ms and
@@ -101,7 +94,7 @@ enum gz_result gz_whole_gap_ns(const struct gz_movement_input *input, size_t cou
  *
  * @param input   @p count samples, each newer than the last; places are not read
  */
-void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_WHOLE_CLASSES],
+void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_FOREST_CLASSES],
 		    size_t count);
 
 /**

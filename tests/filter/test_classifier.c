@@ -198,6 +198,46 @@ static void lists_of_questions_give_the_scores_of_the_trees(void **state)
 			 gz_forest_lists_of(&gz_forest_certain));
 }
 
+/* Label samples of which one class each is the likeliest: f, s, p, n, r; '.' was not measured. */
+static void label_each(const char *likeliest, char *out_labels)
+{
+	static const char classes[] = "fspnr";
+	struct gz_forest_memory memory = { .any = false };
+	size_t i = 0;
+	for (; likeliest[i]; i++) {
+		const char *place = strchr(classes, likeliest[i]);
+		int32_t scores[GZ_FOREST_CLASSES] = { 2, 1, 0, -1, -2 };
+		if (place)
+			scores[place - classes] = 9999;
+		out_labels[i] = classes[gz_forest_label(&memory, place ? scores : NULL, false)];
+	}
+	out_labels[i] = 0;
+}
+
+static void ringing_follows_saccades_only_and_else_is_the_next_likeliest(void **state)
+{
+	(void)state;
+	char labels[16];
+	label_each("fssrrpp", labels);
+	assert_string_equal(labels, "fssrrpp");
+	label_each("rfrrssrfr", labels);
+	assert_string_equal(labels, "ffffssrff");
+	label_each("ss.rrf", labels);
+	assert_string_equal(labels, "ssnfff");
+}
+
+static void a_forest_that_does_not_know_ringing_never_finds_it(void **state)
+{
+	(void)state;
+	const float features[GZ_MOVEMENT_FEATURES] = { 0 };
+	int32_t scores[GZ_FOREST_CLASSES];
+	assert_int_equal(gz_forest_at_once.class_count, GZ_FOREST_RINGING);
+	assert_int_equal(gz_forest_certain.class_count, GZ_FOREST_CLASSES);
+	gz_forest_score(&gz_forest_at_once, features, scores);
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++)
+		assert_true((scores[k] == GZ_FOREST_NEVER) == (k == GZ_FOREST_RINGING));
+}
+
 static void features_and_forests_cost_a_few_microseconds(void **state)
 {
 	(void)state;
@@ -234,6 +274,8 @@ TEST_SUITE(classifier)
 		cmocka_unit_test(a_loss_is_measured_and_holds_the_place),
 		cmocka_unit_test(any_samples_give_finite_features_and_the_same_again),
 		cmocka_unit_test(lists_of_questions_give_the_scores_of_the_trees),
+		cmocka_unit_test(ringing_follows_saccades_only_and_else_is_the_next_likeliest),
+		cmocka_unit_test(a_forest_that_does_not_know_ringing_never_finds_it),
 		cmocka_unit_test(features_and_forests_cost_a_few_microseconds),
 	};
 	return cmocka_run_group_tests_name("filter.classifier", tests, NULL, NULL);

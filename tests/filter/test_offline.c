@@ -279,7 +279,7 @@ static void decode(const char *likeliest, int32_t lead, uint8_t *out_class)
 	enum { MOST = 64 };
 	static const char classes[] = "fspnr";
 	struct gz_movement_input input[MOST];
-	int32_t scores[MOST][GZ_WHOLE_CLASSES] = { { 0 } };
+	int32_t scores[MOST][GZ_FOREST_CLASSES] = { { 0 } };
 	const size_t count = strlen(likeliest);
 	const struct gz_whole_costs costs = { 10000, 20000, { 0 } };
 	assert_in_range(count, 1, MOST);
@@ -290,7 +290,7 @@ static void decode(const char *likeliest, int32_t lead, uint8_t *out_class)
 		if (place)
 			scores[i][place - classes] = lead;
 	}
-	assert_int_equal(gz_whole_decode(input, (const int32_t(*)[GZ_WHOLE_CLASSES])scores, count,
+	assert_int_equal(gz_whole_decode(input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count,
 					 &costs, out_class),
 			 GZ_OK);
 	for (size_t i = 0; i < count; i++)

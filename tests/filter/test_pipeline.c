@@ -363,7 +363,7 @@ static void saccades_are_found_at_any_rate(void **state)
 }
 
 /* The events of a viewer who follows something half of the time. */
-static void watch_pursuits(bool still_scene, size_t counts[GZ_EVENT_LOST + 1])
+static void watch_pursuits(bool still_scene, size_t counts[GZ_EVENT_COUNT])
 {
 	struct gz_sim_params params = sim_params(250);
 	struct viewing viewing;
@@ -382,7 +382,7 @@ static void watch_pursuits(bool still_scene, size_t counts[GZ_EVENT_LOST + 1])
 static void in_a_still_scene_there_is_no_pursuit(void **state)
 {
 	(void)state;
-	size_t moving[GZ_EVENT_LOST + 1] = { 0 }, still[GZ_EVENT_LOST + 1] = { 0 };
+	size_t moving[GZ_EVENT_COUNT] = { 0 }, still[GZ_EVENT_COUNT] = { 0 };
 	watch_pursuits(false, moving);
 	watch_pursuits(true, still);
 	assert_true(moving[GZ_EVENT_PURSUIT] > 1000);

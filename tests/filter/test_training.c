@@ -39,10 +39,10 @@ static struct gz_movement_input input_of(struct gz_pipeline *pipeline,
 static void hash_row(void *user, size_t index, const float features[GZ_WHOLE_FEATURES])
 {
 	struct hashes *hashes = user;
-	int32_t scores[GZ_WHOLE_CLASSES];
+	int32_t scores[GZ_FOREST_CLASSES];
 	(void)index;
 	gz_whole_score(features, scores);
-	hashes->whole = hash_scores(hashes->whole, scores, GZ_WHOLE_CLASSES);
+	hashes->whole = hash_scores(hashes->whole, scores, GZ_FOREST_CLASSES);
 }
 
 static void hash_whole_recording(const struct gz_labelled_recording *recording,
@@ -72,9 +72,11 @@ static void hash_recording(const struct gz_labelled_recording *recording, struct
 		int32_t scores[GZ_FOREST_CLASSES];
 		(void)gz_movement_step(&movement, &recording->display, &input, features);
 		gz_forest_score(&gz_forest_at_once, features, scores);
-		hashes->at_once = hash_scores(hashes->at_once, scores, GZ_FOREST_CLASSES);
+		hashes->at_once =
+			hash_scores(hashes->at_once, scores, gz_forest_at_once.class_count);
 		gz_forest_score(&gz_forest_certain, features, scores);
-		hashes->certain = hash_scores(hashes->certain, scores, GZ_FOREST_CLASSES);
+		hashes->certain =
+			hash_scores(hashes->certain, scores, gz_forest_certain.class_count);
 	}
 }
 
