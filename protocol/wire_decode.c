@@ -24,7 +24,8 @@ static bool take_gaze_event(struct gz_unpack *unpack, const msgpack_object *map,
 static void take_final_event(struct gz_unpack *unpack, struct gz_gaze *gaze)
 {
 	const msgpack_object *map = gz_unpack_map(unpack, unpack->map, "event_final");
-	if (!map)
+	/* Later versions may know more labels. Without them the sample is as good as ever. */
+	if (!map || gz_unpack_name_is_strange(map, "event", event_name, GZ_EVENT_COUNT))
 		return;
 	gaze->final_known =
 		take_gaze_event(unpack, map, &gaze->final_event) && gz_unpack_find(map, "seq");

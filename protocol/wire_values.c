@@ -676,15 +676,29 @@ bool gz_unpack_time(struct gz_unpack *unpack, const msgpack_object *map, const c
 	return true;
 }
 
+/* The number of a name; -1: none has it. */
+static int find_name(const msgpack_object *value, const char *(*name_of)(int), int count)
+{
+	int i = 0;
+	while (i < count && !text_equals(value, name_of(i)))
+		i++;
+	return i < count ? i : -1;
+}
+
+bool gz_unpack_name_is_strange(const msgpack_object *map, const char *key,
+			       const char *(*name_of)(int), int count)
+{
+	const msgpack_object *value = gz_unpack_find(map, key);
+	return value && value->type == MSGPACK_OBJECT_STR && find_name(value, name_of, count) < 0;
+}
+
 int gz_unpack_name(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		   const char *(*name_of)(int), int count)
 {
 	const msgpack_object *value = find_type(unpack, map, key, MSGPACK_OBJECT_STR);
 	if (!value)
 		return -1;
-	for (int i = 0; i < count; i++)
-		if (text_equals(value, name_of(i)))
-			return i;
-	unpack->refused = true;
-	return -1;
+	const int found = find_name(value, name_of, count);
+	unpack->refused = unpack->refused || found < 0;
+	return found;
 }

@@ -109,6 +109,10 @@ bool gz_unpack_norm_pos(struct gz_unpack *unpack, const msgpack_object *map,
 bool gz_unpack_time(struct gz_unpack *unpack, const msgpack_object *map, const char *key,
 		    int64_t unit_ns, int64_t *out_time_ns);
 
+/** Whether the key has a text that is none of the names which @p name_of gives to 0 … count - 1, as
+ *  one of a later version may be. */
+bool gz_unpack_name_is_strange(const msgpack_object *map, const char *key,
+			       const char *(*name_of)(int), int count);
 /** Take one of the names that @p name_of gives to 0 … count - 1. @return its number, or -1 if it is
  * missing or refused */
 int gz_unpack_name(struct gz_unpack *unpack, const msgpack_object *map, const char *key,

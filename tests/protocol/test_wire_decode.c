@@ -546,6 +546,21 @@ static void nan_from_another_sender_is_not_measured(void **state)
 	assert_float_same(gaze.raw.y, NAN);
 }
 
+static void event_final_of_a_later_version(struct built *b)
+{
+	msgpack_pack_map(key(b, "event_final"), 2);
+	msgpack_pack_int(key(b, "seq"), 1);
+	text(b, "event", "microsaccade");
+}
+
+static void certain_label_of_a_later_version_is_left_out(void **state)
+{
+	(void)state;
+	struct gz_gaze gaze;
+	assert_int_equal(decode_with(event_final_of_a_later_version, &gaze), GZ_OK);
+	assert_false(gaze.final_known);
+}
+
 static void gaze_without_place_or_time_is_refused(void **state)
 {
 	(void)state;
@@ -787,6 +802,7 @@ TEST_SUITE(wire_decode)
 		cmocka_unit_test(gaze_with_the_least_keys_decodes),
 		cmocka_unit_test(gaze_with_a_wrong_value_is_refused_and_nothing_written),
 		cmocka_unit_test(nan_from_another_sender_is_not_measured),
+		cmocka_unit_test(certain_label_of_a_later_version_is_left_out),
 		cmocka_unit_test(gaze_without_place_or_time_is_refused),
 		cmocka_unit_test(timestamp_no_ns_can_hold_is_refused),
 		cmocka_unit_test(duration_negative_is_refused),
