@@ -266,12 +266,10 @@ static bool parse_table(const char *text, char file[GZ_PATH_SIZE], int size[2], 
 	const char *colon = strrchr(text, ':'), *height;
 	char width[GZ_NAME_SIZE];
 	long long pixels[2];
-	*out_sized = !ends_with(text, ending);
-	const size_t file_length = *out_sized && colon ? (size_t)(colon - text) : length;
-	if (file_length >= GZ_PATH_SIZE || file_length < sizeof ending ||
-	    strncmp(text + file_length - strlen(ending), ending, strlen(ending)) != 0)
+	*out_sized = colon && !ends_with(text, ending);
+	snprintf(file, GZ_PATH_SIZE, "%.*s", (int)(*out_sized ? colon - text : (long)length), text);
+	if (length >= GZ_PATH_SIZE || !ends_with(file, ending))
 		return false;
-	snprintf(file, GZ_PATH_SIZE, "%.*s", (int)file_length, text);
 	if (!*out_sized)
 		return true;
 	if (!split(colon + 1, 'x', width, &height) || !parse_count(width, &pixels[0]) ||
