@@ -520,18 +520,8 @@ static void surround_casts(const struct cpu_raycaster *cpu, const struct gz_ray_
 			   struct cast_job *job)
 {
 	struct gz_seen_surroundings around;
-	double half[3];
-	gz_volume_half_extent(cpu->volume, half);
-	const struct gz_surroundings_request request = {
-		.environment = &rays->environment,
-		.cube = &cpu->pictures.cube,
-		.light = &rays->light,
-		.background = rays->background,
-		.half = half,
-		.towards = job->casts[0].light.towards,
-		.lengths_a_unit = 1,
-	};
-	gz_seen_surroundings_make(&request, &around);
+	gz_ray_params_surroundings(rays, cpu->volume, &cpu->pictures.cube,
+				   job->casts[0].light.towards, 1, &around);
 	for (int i = 0; i < job->cast_count; i++)
 		job->casts[i].around = around;
 }

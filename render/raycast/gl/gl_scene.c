@@ -403,18 +403,7 @@ static void fill_block_surroundings(const struct gz_gl_scene *scene,
 				    struct gz_gl_cast_block *block)
 {
 	struct gz_seen_surroundings around;
-	double half[3];
-	gz_volume_half_extent(scene->volume, half);
-	const struct gz_surroundings_request request = {
-		.environment = &rays->environment,
-		.cube = &scene->pictures.cube,
-		.light = &rays->light,
-		.background = rays->background,
-		.half = half,
-		.towards = towards,
-		.lengths_a_unit = 1,
-	};
-	gz_seen_surroundings_make(&request, &around);
+	gz_ray_params_surroundings(rays, scene->volume, &scene->pictures.cube, towards, 1, &around);
 	gz_gl_surroundings_fill(&around, &block->around);
 }
 

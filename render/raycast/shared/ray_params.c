@@ -82,6 +82,24 @@ bool gz_ray_params_lit(const struct gz_ray_params *rays)
 	return rays->shading == GZ_SHADING_GRADIENT || rays->light.shadow_steps > 0;
 }
 
+void gz_ray_params_surroundings(const struct gz_ray_params *rays, const struct gz_volume *volume,
+				const struct gz_cube *cube, const float towards[3],
+				double lengths_a_unit, struct gz_seen_surroundings *out_seen)
+{
+	double half[3];
+	gz_volume_half_extent(volume, half);
+	const struct gz_surroundings_request request = {
+		.environment = &rays->environment,
+		.cube = cube,
+		.light = &rays->light,
+		.background = rays->background,
+		.half = half,
+		.towards = towards,
+		.lengths_a_unit = lengths_a_unit,
+	};
+	gz_seen_surroundings_make(&request, out_seen);
+}
+
 bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b)
 {
 	return gz_options_same(gz_ray_options, gz_ray_option_count, a, b) &&

@@ -15,6 +15,7 @@
 #include "render/light/environment.h"
 #include "render/light/light.h"
 #include "render/light/surface_look.h"
+#include "render/light/surroundings.h"
 #include "render/picture/camera.h"
 #include "render/raycast/shared/slicing.h"
 
@@ -92,6 +93,19 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays);
 
 /** Whether samples are lit: by gradients, or with shadows. */
 bool gz_ray_params_lit(const struct gz_ray_params *rays);
+
+/**
+ * Make what rays see of the surroundings.
+ *
+ * @param volume          its box stands on the floor
+ * @param cube            the pictures, or none
+ * @param towards         unit vector towards the light, in world directions
+ * @param lengths_a_unit  of the wanted unit of length in a world unit
+ * @param[out] out_seen   borrows the cube's texels
+ */
+void gz_ray_params_surroundings(const struct gz_ray_params *rays, const struct gz_volume *volume,
+				const struct gz_cube *cube, const float towards[3],
+				double lengths_a_unit, struct gz_seen_surroundings *out_seen);
 
 /** Whether every option has equal values. */
 bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_params *b);

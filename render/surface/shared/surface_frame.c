@@ -74,24 +74,6 @@ static void fill_glass(const struct gz_surface_meshes *meshes, const struct gz_s
 			(float)(log2(fmax(look->colour[i], BLACKEST)) / meshes->world_mm);
 }
 
-/* After fill_look(), which knows the light. */
-static void fill_surroundings(const struct gz_surface_meshes *meshes, const struct gz_cube *cube,
-			      const struct gz_ray_params *rays, struct gz_surface_frame *frame)
-{
-	double half[3];
-	gz_volume_half_extent(meshes->items[0].object.volume, half);
-	const struct gz_surroundings_request request = {
-		.environment = &rays->environment,
-		.cube = cube,
-		.light = &rays->light,
-		.background = rays->background,
-		.half = half,
-		.towards = frame->light.towards,
-		.lengths_a_unit = meshes->world_mm,
-	};
-	gz_seen_surroundings_make(&request, &frame->around);
-}
-
 void gz_surface_colour(const struct gz_surface_item *item, const struct gz_surface_look *look,
 		       float out_colour[3])
 {
@@ -110,6 +92,7 @@ struct gz_surface_frame gz_surface_frame_make(const struct gz_surface_meshes *me
 	fill_rays(meshes, camera, &frame);
 	fill_look(rays, camera, &frame);
 	fill_glass(meshes, &rays->surface, &frame);
-	fill_surroundings(meshes, &cube->cube, rays, &frame);
+	gz_ray_params_surroundings(rays, meshes->items[0].object.volume, &cube->cube,
+				   frame.light.towards, meshes->world_mm, &frame.around);
 	return frame;
 }
