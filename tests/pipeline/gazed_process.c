@@ -139,6 +139,18 @@ void gazed_spawn(const struct gazed_start *start, struct gazed_process *out)
 	note_running(0, out->pid);
 }
 
+long gazed_resident_kib(const struct gazed_process *process)
+{
+	char path[64];
+	long pages = 0;
+	snprintf(path, sizeof path, "/proc/%d/statm", (int)process->pid);
+	FILE *file = fopen(path, "re");
+	assert_non_null(file);
+	assert_int_equal(fscanf(file, "%*s %ld", &pages), 1);
+	fclose(file);
+	return pages * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
 const char *gazed_said(const struct gazed_process *process)
 {
 	static char text[16384];

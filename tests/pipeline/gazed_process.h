@@ -62,6 +62,9 @@ int gazed_stop(struct gazed_process *process, int signal);
 /** Its log so far; static buffer. */
 const char *gazed_said(const struct gazed_process *process);
 
+/** The memory of a running daemon that lies in RAM, KiB. */
+long gazed_resident_kib(const struct gazed_process *process);
+
 /** One request over the control socket; the answer in a static buffer; fails the test after
  * PATIENCE_S.
  *  @param[out] out_ms  how long it took; may be NULL */

@@ -289,18 +289,6 @@ static int connect_locally(const char *name)
 	return fd;
 }
 
-static long resident_kib(const struct gazed_process *gazed)
-{
-	char path[64];
-	long pages = 0;
-	snprintf(path, sizeof path, "/proc/%d/statm", (int)gazed->pid);
-	FILE *file = fopen(path, "re");
-	assert_non_null(file);
-	assert_int_equal(fscanf(file, "%*s %ld", &pages), 1);
-	fclose(file);
-	return pages * (sysconf(_SC_PAGESIZE) / 1024);
-}
-
 /* Subscribe to new topics until the daemon ends the connection, slowly enough for libzmq to keep
  * up. @return how many were sent */
 static int subscribe_until_ended(int fd, int connection, int most)
@@ -331,7 +319,7 @@ static void gazed_local_flood_of_subscriptions_is_ended(void **state)
 	gazed_wait_ready(&place, &gazed);
 	reader_open(&reader, &place, "");
 	reader_receive_gaze(&reader, 10);
-	long before_kib = resident_kib(&gazed);
+	long before_kib = gazed_resident_kib(&gazed);
 	for (int i = 0; i < TIMES; i++) {
 		int fd = connect_locally("stream");
 		shake_hands(fd);
@@ -344,7 +332,7 @@ static void gazed_local_flood_of_subscriptions_is_ended(void **state)
 	while (reader.status.refused[GZ_REFUSAL_SUBSCRIPTIONS] < TIMES)
 		assert_true(reader_receive(&reader, 2000));
 #if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
-	assert_in_range(resident_kib(&gazed), 0, before_kib + MEMORY_KIB);
+	assert_in_range(gazed_resident_kib(&gazed), 0, before_kib + MEMORY_KIB);
 #else
 	(void)before_kib;
 #endif

@@ -495,18 +495,6 @@ static void curve_flood_of_refused_clients_takes_nothing_from_a_reader(void **st
 	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
 }
 
-static long resident_kib(const struct gazed_process *gazed)
-{
-	char path[64];
-	long pages = 0;
-	snprintf(path, sizeof path, "/proc/%d/statm", (int)gazed->pid);
-	FILE *file = fopen(path, "re");
-	assert_non_null(file);
-	assert_int_equal(fscanf(file, "%*s %ld", &pages), 1);
-	fclose(file);
-	return pages * (sysconf(_SC_PAGESIZE) / 1024);
-}
-
 /* A reader whose key is known, but who subscribes without an end. */
 static void curve_flood_of_subscriptions_is_ended(void **state)
 {
@@ -522,7 +510,7 @@ static void curve_flood_of_subscriptions_is_ended(void **state)
 	assert_int_equal(gz_stream_open_with_keys(endpoint, NULL, &keys, &captured.log, &stream),
 			 GZ_OK);
 	assert_int_equal(gz_stream_read(stream, PATIENCE_MS, &message), GZ_OK);
-	long before_kib = resident_kib(&gazed);
+	long before_kib = gazed_resident_kib(&gazed);
 	void *context = zmq_ctx_new(), *flood = zmq_socket(context, ZMQ_SUB);
 	const int zero = 0;
 	zmq_setsockopt(flood, ZMQ_LINGER, &zero, sizeof zero);
@@ -549,7 +537,7 @@ static void curve_flood_of_subscriptions_is_ended(void **state)
 	assert_int_equal(counters.lost, 0);
 	assert_int_equal(counters.connections, 1);
 #if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
-	assert_in_range(resident_kib(&gazed), 0, before_kib + MEMORY_KIB);
+	assert_in_range(gazed_resident_kib(&gazed), 0, before_kib + MEMORY_KIB);
 #else
 	(void)before_kib;
 #endif
