@@ -39,34 +39,16 @@ static void append_byte(struct gz_pack *pack, unsigned byte)
 		*room = (unsigned char)byte;
 }
 
-static void append_16(struct gz_pack *pack, unsigned char format, uint16_t value)
+/* A format and a number of @p size bytes, which is a constant for each caller. */
+static inline void append_number(struct gz_pack *pack, unsigned char format, uint64_t value,
+				 size_t size)
 {
-	unsigned char *room = take_room(pack, 3);
-	if (!room)
-		return;
-	value = htobe16(value);
-	*room = format;
-	memcpy(room + 1, &value, sizeof value);
-}
-
-static void append_32(struct gz_pack *pack, unsigned char format, uint32_t value)
-{
-	unsigned char *room = take_room(pack, 5);
-	if (!room)
-		return;
-	value = htobe32(value);
-	*room = format;
-	memcpy(room + 1, &value, sizeof value);
-}
-
-static void append_64(struct gz_pack *pack, unsigned char format, uint64_t value)
-{
-	unsigned char *room = take_room(pack, 9);
+	unsigned char *room = take_room(pack, 1 + size);
 	if (!room)
 		return;
 	value = htobe64(value);
 	*room = format;
-	memcpy(room + 1, &value, sizeof value);
+	memcpy(room + 1, (const unsigned char *)&value + sizeof value - size, size);
 }
 
 /* The head of a text of @p size bytes. */
@@ -78,9 +60,9 @@ static void append_text_head(struct gz_pack *pack, size_t size)
 		append_byte(pack, 0xd9);
 		append_byte(pack, (unsigned)size);
 	} else if (size <= UINT16_MAX) {
-		append_16(pack, 0xda, (uint16_t)size);
+		append_number(pack, 0xda, (uint16_t)size, 2);
 	} else {
-		append_32(pack, 0xdb, (uint32_t)size);
+		append_number(pack, 0xdb, (uint32_t)size, 4);
 	}
 }
 
@@ -116,9 +98,9 @@ void gz_pack_map(struct gz_pack *pack, const char *key, size_t pairs)
 	if (pairs < 16)
 		append_byte(pack, 0x80 | (unsigned)pairs);
 	else if (pairs <= UINT16_MAX)
-		append_16(pack, 0xde, (uint16_t)pairs);
+		append_number(pack, 0xde, (uint16_t)pairs, 2);
 	else
-		append_32(pack, 0xdf, (uint32_t)pairs);
+		append_number(pack, 0xdf, (uint32_t)pairs, 4);
 }
 
 void gz_pack_array(struct gz_pack *pack, const char *key, size_t elements)
@@ -127,9 +109,9 @@ void gz_pack_array(struct gz_pack *pack, const char *key, size_t elements)
 	if (elements < 16)
 		append_byte(pack, 0x90 | (unsigned)elements);
 	else if (elements <= UINT16_MAX)
-		append_16(pack, 0xdc, (uint16_t)elements);
+		append_number(pack, 0xdc, (uint16_t)elements, 2);
 	else
-		append_32(pack, 0xdd, (uint32_t)elements);
+		append_number(pack, 0xdd, (uint32_t)elements, 4);
 }
 
 void gz_pack_nil(struct gz_pack *pack, const char *key)
@@ -199,11 +181,11 @@ static void append_unsigned(struct gz_pack *pack, uint64_t value)
 		append_byte(pack, 0xcc);
 		append_byte(pack, (unsigned)value);
 	} else if (value <= UINT16_MAX) {
-		append_16(pack, 0xcd, (uint16_t)value);
+		append_number(pack, 0xcd, (uint16_t)value, 2);
 	} else if (value <= UINT32_MAX) {
-		append_32(pack, 0xce, (uint32_t)value);
+		append_number(pack, 0xce, (uint32_t)value, 4);
 	} else {
-		append_64(pack, 0xcf, value);
+		append_number(pack, 0xcf, value, 8);
 	}
 }
 
@@ -215,11 +197,11 @@ static void append_negative(struct gz_pack *pack, int64_t value)
 		append_byte(pack, 0xd0);
 		append_byte(pack, 0xff & (unsigned)value);
 	} else if (value >= INT16_MIN) {
-		append_16(pack, 0xd1, (uint16_t)value);
+		append_number(pack, 0xd1, (uint16_t)value, 2);
 	} else if (value >= INT32_MIN) {
-		append_32(pack, 0xd2, (uint32_t)value);
+		append_number(pack, 0xd2, (uint32_t)value, 4);
 	} else {
-		append_64(pack, 0xd3, (uint64_t)value);
+		append_number(pack, 0xd3, (uint64_t)value, 8);
 	}
 }
 
@@ -241,7 +223,7 @@ void gz_pack_uint(struct gz_pack *pack, const char *key, uint64_t value)
 void gz_pack_fixed_int64(struct gz_pack *pack, const char *key, int64_t value)
 {
 	pack_key(pack, key);
-	append_64(pack, 0xd3, (uint64_t)value);
+	append_number(pack, 0xd3, (uint64_t)value, 8);
 }
 
 void gz_pack_float(struct gz_pack *pack, const char *key, float value)
@@ -250,7 +232,7 @@ void gz_pack_float(struct gz_pack *pack, const char *key, float value)
 	pack_key(pack, key);
 	memcpy(&bits, &value, sizeof bits);
 	if (isfinite(value))
-		append_32(pack, 0xca, bits);
+		append_number(pack, 0xca, bits, 4);
 	else
 		append_byte(pack, 0xc0);
 }
@@ -261,7 +243,7 @@ void gz_pack_double(struct gz_pack *pack, const char *key, double value)
 	pack_key(pack, key);
 	memcpy(&bits, &value, sizeof bits);
 	if (isfinite(value))
-		append_64(pack, 0xcb, bits);
+		append_number(pack, 0xcb, bits, 8);
 	else
 		append_byte(pack, 0xc0);
 }
