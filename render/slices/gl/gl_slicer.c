@@ -201,16 +201,19 @@ static unsigned slice_program(const struct slicing *slicing, int level)
 	return *program;
 }
 
-/* The programs that fill whole targets. */
+/* The programs that fill whole targets, as far as the frame needs them. */
 static bool make_fill_programs(const struct slicing *slicing)
 {
 	struct gz_gl_slicer *slicer = slicing->slicer;
 	char defines[GZ_GL_CAST_DEFINES_SIZE];
 	struct gz_gl_shader hide[2], behind[2];
 	gz_gl_hide_shaders(hide);
+	if (!make_program(&slicer->hide, hide, 2, slicer->log))
+		return false;
+	if (slicing->rays->environment.kind == GZ_SURROUNDINGS_NONE)
+		return true;
 	gz_gl_behind_shaders(sample_kind(slicing, 0), &slicer->device, defines, behind);
-	return make_program(&slicer->hide, hide, 2, slicer->log) &&
-	       make_program(&slicer->behind, behind, 2, slicer->log);
+	return make_program(&slicer->behind, behind, 2, slicer->log);
 }
 
 /* Cut the box for the camera, and move the rays' origins to its first depth: places along rays are

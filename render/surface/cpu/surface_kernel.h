@@ -66,6 +66,13 @@ SIMD void aim_shadows(const struct gz_surface_cast *cast, unsigned number, const
 		put_lanes(lanes.mask, place[axis], origins[axis] + first);
 }
 
+SIMD void clear_mirrored(int first, struct packet *packet)
+{
+	vf_store(packet->mirrored_share + first, vf_set(0));
+	for (int channel = 0; channel < 3; channel++)
+		vf_store(packet->mirrored[channel] + first, vf_set(0));
+}
+
 /* Note what the lanes of the mask mirror. */
 SIMD void mirror_lanes(const struct gz_surface_cast *cast, const struct meeting *at,
 		       const struct view *view, struct lanes lanes, struct packet *packet)
@@ -131,11 +138,10 @@ SIMD int light_hits(const struct gz_surface_cast *cast, int first, struct packet
 	vi_store(hits->ids + first, vi_set(0));
 	vf_store(packet->factor + first, vf_set(0));
 	vf_store(packet->white + first, vf_set(0));
-	vf_store(packet->mirrored_share + first, vf_set(0));
-	for (int channel = 0; channel < 3; channel++) {
+	for (int channel = 0; channel < 3; channel++)
 		vf_store(packet->colour[channel] + first, vf_set(0));
-		vf_store(packet->mirrored[channel] + first, vf_set(0));
-	}
+	if (cast->frame.light.reflection > 0)
+		clear_mirrored(first, packet);
 	/* Each mesh once that some lane has met: there may be hundreds of others. */
 	vm left = met;
 	unsigned last = cast->mesh_count;
