@@ -18,6 +18,21 @@ void gz_shading_main_light(const struct gz_shading_vectors *normals, size_t coun
 		values[i] = 0.5F + 0.5F * (lx * x[i] + ly * y[i] + lz * z[i]);
 }
 
+/* Share of light from all around under a plain lamp. Chosen: shaded sides stay visible. */
+#define PLAIN_AMBIENT 0.2F
+
+void gz_shading_plain_light(const struct gz_shading_vectors *normals, size_t count,
+			    const float light[3], float *out_values)
+{
+	const float *restrict x = normals->x, *restrict y = normals->y, *restrict z = normals->z;
+	const float lx = light[0], ly = light[1], lz = light[2];
+	float *restrict values = out_values;
+	for (size_t i = 0; i < count; i++) {
+		const float facing = lx * x[i] + ly * y[i] + lz * z[i];
+		values[i] = PLAIN_AMBIENT + (1 - PLAIN_AMBIENT) * (facing > 0 ? facing : 0);
+	}
+}
+
 void gz_shading_plateau_light(const struct gz_shading_vectors *normals,
 			      const struct gz_shading_vectors *viewer, size_t count,
 			      float *out_values)

@@ -37,6 +37,15 @@ void gz_shading_main_light(const struct gz_shading_vectors *normals, size_t coun
 			   const float light[3], float *out_values);
 
 /**
+ * Plain light: 1/5 + 4/5 max(0, l.n), what a lamp does to a matte surface (Lambert) with a little
+ * light from all around. For comparison with an illustration.
+ *
+ * @param light  unit vector towards the lamp
+ */
+void gz_shading_plain_light(const struct gz_shading_vectors *normals, size_t count,
+			    const float light[3], float *out_values);
+
+/**
  * Plateau light, a light at the viewer: max(0, v.n) (Pfisterer 2007, eq. 2.1).
  *
  * @param viewer  unit vector from each point towards the viewer

@@ -269,6 +269,7 @@ enum gz_result gz_shading_picture_compose(struct gz_shading_picture *picture,
 	begin_frame(&job);
 	gz_workers_run(workers, begin_part, &job, parts);
 	gz_tone_curve_make(picture->histograms, (size_t)picture->histogram_count, &picture->curve);
+	gz_tone_curve_soften((float)settings->equalisation, &picture->curve);
 	gz_workers_run(workers, end_part, &job, parts);
 	*out_map = picture->planes[PLANE_MAP];
 	return GZ_OK;

@@ -1,7 +1,7 @@
 /**
  * @file
- * The settings of a shading map: 24 single ones, and six that stand for them in everyday use
- * (Pfisterer 2007, sections 3.2 and 3.3).
+ * The settings of a shading map: the thesis's 24 single ones and three more, and six that stand for
+ * them in everyday use (Pfisterer 2007, sections 3.2 and 3.3).
  */
 #ifndef GZ_RENDER_ILLUSTRATION_SHADING_SETTINGS_H
 #define GZ_RENDER_ILLUSTRATION_SHADING_SETTINGS_H
@@ -18,8 +18,11 @@ struct gz_shading_settings {
 	/* Weights of surface parameters, relative to each other. */
 	double main_light, plateau_light, grazing_light, surface_shape, curvature;
 	int main_light_smoothing; /**< level of the normals, 0: the surface's own */
+	double plain_light;       /**< weight, too: Lambert's law */
+	double flat;              /**< brightness of surfaces if all these weights are 0 */
 	double exaggeration;      /**< a of grazing light */
 	double detail_frequency;  /**< 0: wide forms, 1: fine ones */
+	double equalisation;      /**< share of the equalised tone, the rest is the tone itself */
 	/* Weights of scene information. */
 	double importance, viewer_distance, object_distance;
 	double object_distance_mm; /**< distance that counts as far */

@@ -31,6 +31,14 @@ void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count
 	}
 }
 
+void gz_tone_curve_soften(float share, struct gz_tone_curve *curve)
+{
+	for (size_t bin = 0; bin < GZ_TONE_BINS; bin++) {
+		const float same = (float)bin / (GZ_TONE_BINS - 1);
+		curve->values[bin] = same + share * (curve->values[bin] - same);
+	}
+}
+
 void gz_tone_apply(const struct gz_tone_curve *curve, const uint32_t *ids, size_t count, float *map)
 {
 	for (size_t i = 0; i < count; i++)

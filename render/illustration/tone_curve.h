@@ -40,6 +40,9 @@ void gz_tone_count(const float *map, const uint32_t *ids, size_t count,
 void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count,
 			struct gz_tone_curve *out_curve);
 
+/** Mix a curve with the one that changes nothing: @p share of the curve, [0, 1]. */
+void gz_tone_curve_soften(float share, struct gz_tone_curve *curve);
+
 /** Change the brightness of pixels of objects by a curve; the background stays as it is. */
 void gz_tone_apply(const struct gz_tone_curve *curve, const uint32_t *ids, size_t count,
 		   float *map);

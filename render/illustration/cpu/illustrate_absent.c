@@ -8,15 +8,21 @@ bool gz_illustrate_caster_present(void)
 	return false;
 }
 
+enum gz_result gz_illustrate_caster_check(const struct gz_backend_params *params,
+					  const struct gz_log *log)
+{
+	(void)params;
+	gz_err(log, "illustrations are not in this build, because it was made without Embree; "
+		    "install it (libembree-dev) and build again");
+	return GZ_ERR_UNSUPPORTED;
+}
+
 enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *params,
 					   const struct gz_log *log,
 					   struct gz_illustrate_caster **out_caster)
 {
-	(void)params;
 	(void)out_caster;
-	gz_err(log, "illustrations are not in this build, because it was made without Embree; "
-		    "install it (libembree-dev) and build again");
-	return GZ_ERR_UNSUPPORTED;
+	return gz_illustrate_caster_check(params, log);
 }
 
 enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,

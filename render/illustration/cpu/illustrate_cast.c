@@ -4,7 +4,7 @@
 #include <stdalign.h>
 #include <stdbool.h>
 
-enum { RAYS = GZ_ILLUSTRATE_RAYS, PARAMETERS_MAX = 5 };
+enum { RAYS = GZ_ILLUSTRATE_RAYS, PARAMETERS_MAX = 6 };
 
 /* What shading reads of each ray's end. */
 struct shading_lanes {
@@ -18,6 +18,22 @@ struct illustrate_packet {
 	struct RTCRayHit16 hit;
 	alignas(64) int valid[RAYS]; /* -1: cast this ray */
 };
+
+/* Cut a ray by the clip box. Returns whether something of it is left. */
+static bool clip_ray(const struct gz_illustrate_cast *cast, struct RTCRay16 *ray, int i)
+{
+	const float origin[3] = { ray->org_x[i], ray->org_y[i], ray->org_z[i] };
+	const float direction[3] = { ray->dir_x[i], ray->dir_y[i], ray->dir_z[i] };
+	for (int axis = 0; axis < 3; axis++) {
+		/* Along a face nothing divides by 0: such a ray is in or out as a whole. */
+		const float along = fabsf(direction[axis]) > 1e-20F ? direction[axis] : 1e-20F;
+		const float a = (cast->clip_least[axis] - origin[axis]) / along;
+		const float b = (cast->clip_greatest[axis] - origin[axis]) / along;
+		ray->tnear[i] = fmaxf(ray->tnear[i], fminf(a, b));
+		ray->tfar[i] = fminf(ray->tfar[i], fmaxf(a, b));
+	}
+	return ray->tnear[i] <= ray->tfar[i];
+}
 
 static void aim_packet(const struct gz_illustrate_cast *cast, const struct gz_illustrate_tile *tile,
 		       struct illustrate_packet *packet)
@@ -46,6 +62,8 @@ static void aim_packet(const struct gz_illustrate_cast *cast, const struct gz_il
 		packet->hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
 		packet->hit.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
 		packet->valid[i] = tile->active >> i & 1 ? -1 : 0;
+		if (cast->clipped && !clip_ray(cast, ray, i))
+			packet->valid[i] = 0;
 	}
 }
 
@@ -166,11 +184,14 @@ static void shade_lanes(const struct gz_illustrate_cast *cast, const struct shad
 	struct gz_shading_vectors normals[GZ_SHADING_LEVELS];
 	const struct gz_shading_vectors viewer = { lanes->viewer[0], lanes->viewer[1],
 						   lanes->viewer[2] };
-	const float all[PARAMETERS_MAX] = { weights->main_light, weights->plateau_light,
+	const float all[PARAMETERS_MAX] = { weights->main_light,    weights->plateau_light,
 					    weights->grazing_light, weights->surface_shape,
-					    weights->curvature };
-	for (int i = 0; i < PARAMETERS_MAX; i++)
+					    weights->curvature,     weights->plain_light };
+	float sum = 0;
+	for (int i = 0; i < PARAMETERS_MAX; i++) {
 		parameters[i] = (struct gz_weighted_parameter) { values[i], all[i] };
+		sum += all[i];
+	}
 	for (int level = 0; level < GZ_SHADING_LEVELS; level++)
 		normals[level] = (struct gz_shading_vectors) { lanes->normals[level][0],
 							       lanes->normals[level][1],
@@ -186,7 +207,11 @@ static void shade_lanes(const struct gz_illustrate_cast *cast, const struct shad
 		gz_shading_surface_shape(lanes->greatest, lanes->least, RAYS, 1, values[3]);
 	if (weights->curvature > 0)
 		gz_shading_curvature_magnitude(lanes->greatest, lanes->least, RAYS, 1, values[4]);
+	if (weights->plain_light > 0)
+		gz_shading_plain_light(&normals[0], RAYS, cast->lamp, values[5]);
 	gz_shading_mean(parameters, PARAMETERS_MAX, RAYS, out_tone);
+	for (int i = 0; i < RAYS && !(sum > 0); i++)
+		out_tone[i] = weights->flat;
 }
 
 void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,

@@ -6,6 +6,7 @@
 #ifndef GZ_RENDER_ILLUSTRATION_CPU_ILLUSTRATE_CAST_H
 #define GZ_RENDER_ILLUSTRATION_CPU_ILLUSTRATE_CAST_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "render/illustration/shading_parameters.h"
@@ -25,7 +26,8 @@ struct gz_illustrate_mesh {
 
 /** Weights of the surface parameters, 0 or more. */
 struct gz_illustrate_weights {
-	float main_light, plateau_light, grazing_light, surface_shape, curvature;
+	float main_light, plateau_light, grazing_light, surface_shape, curvature, plain_light;
+	float flat; /**< the tone if all of them are 0, [0, 1] */
 };
 
 /** What all rays of a frame share. Lengths are in mm, in the frame of struct gz_mesh. */
@@ -36,9 +38,12 @@ struct gz_illustrate_cast {
 	/** The ray of pixel (x, y), as in struct gz_ray_frame. */
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];
+	bool clipped;
+	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
 	struct gz_illustrate_weights weights;
 	int main_level; /**< of the normals under the main light */
 	struct gz_grazing_light grazing;
+	float lamp[3]; /**< unit vector towards the lamp of plain light */
 };
 
 /** The rays of a tile. */

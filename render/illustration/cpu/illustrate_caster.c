@@ -48,10 +48,16 @@ bool gz_illustrate_caster_present(void)
 	return true;
 }
 
+enum gz_result gz_illustrate_caster_check(const struct gz_backend_params *params,
+					  const struct gz_log *log)
+{
+	return gz_cpu_raycaster_check(params, log);
+}
+
 static enum gz_result start_illustrating(struct gz_illustrate_caster *caster,
 					 const struct gz_backend_params *params)
 {
-	enum gz_result result = gz_cpu_raycaster_check(params, caster->log);
+	enum gz_result result = gz_illustrate_caster_check(params, caster->log);
 	if (result != GZ_OK)
 		return result;
 	caster->simd = gz_cast_kernels_find(params->simd)->name;
@@ -108,6 +114,18 @@ static void fill_illustrate_rays(const struct gz_ray_frame *camera, double world
 	}
 }
 
+static void fill_illustrate_clip(const struct gz_illustrate_scene *scene,
+				 const struct gz_clip_box *clip, struct gz_illustrate_cast *cast)
+{
+	const struct gz_volume *volume = scene->meshes.items[0].object.volume;
+	for (int axis = 0; clip && axis < 3; axis++) {
+		const double edge = volume->dims[axis] * volume->spacing[axis];
+		cast->clipped = cast->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;
+		cast->clip_least[axis] = (float)((clip->least[axis] - 0.5) * edge);
+		cast->clip_greatest[axis] = (float)((clip->greatest[axis] - 0.5) * edge);
+	}
+}
+
 /* Turn a direction from the frame of the picture (right, up, towards the viewer) into that of the
  * meshes. Rows of pixels run downwards. */
 static void turn_light(const struct gz_ray_frame *camera, const double direction[3],
@@ -132,18 +150,23 @@ static void turn_light(const struct gz_ray_frame *camera, const double direction
 static void fill_illustrate_look(const struct gz_shading_settings *settings,
 				 const struct gz_ray_frame *camera, struct gz_illustrate_cast *cast)
 {
+	/* Chosen: the way that photographs are lit. */
+	static const double lamp[3] = { -0.5, 0.5, 1 };
 	cast->weights = (struct gz_illustrate_weights) {
 		.main_light = (float)settings->main_light,
 		.plateau_light = (float)settings->plateau_light,
 		.grazing_light = (float)settings->grazing_light,
 		.surface_shape = (float)settings->surface_shape,
 		.curvature = (float)settings->curvature,
+		.plain_light = (float)settings->plain_light,
+		.flat = (float)settings->flat,
 	};
 	cast->main_level = settings->main_light_smoothing;
 	cast->grazing.exaggeration = (float)settings->exaggeration;
 	cast->grazing.levels = GZ_SHADING_LEVELS;
 	gz_grazing_weights(GZ_SHADING_LEVELS, settings->detail_frequency, cast->grazing.weights);
 	turn_light(camera, settings->light_direction, cast->grazing.light);
+	turn_light(camera, lamp, cast->lamp);
 }
 
 static void aim_tile(const struct gz_plan *plan, const struct gz_tile *tile,
@@ -301,7 +324,7 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 	struct illustrate_job job = { .plan = shot->plan, .caster = caster };
 	struct gz_ray_frame camera;
 	const int64_t start_ns = gz_clock_now_ns();
-	const bool was_current = caster->scene.current;
+	const unsigned made_before = caster->scene.made;
 	enum gz_result result = prepare_shot(caster, shot, image, &job, &camera);
 	if (result != GZ_OK)
 		return result;
@@ -310,6 +333,7 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 	job.cast.meshes = caster->scene.listed;
 	job.cast.mesh_count = (unsigned)caster->scene.meshes.count;
 	fill_illustrate_rays(&camera, caster->scene.meshes.world_mm, &job.cast);
+	fill_illustrate_clip(&caster->scene, shot->clip, &job.cast);
 	fill_illustrate_look(shot->settings, &camera, &job.cast);
 	gz_workers_run(caster->workers, illustrate_part, &job,
 		       (shot->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
@@ -320,7 +344,8 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 		result = copy_plane(&caster->planes[PLANE_DEPTH], planes->depth);
 	if (result == GZ_OK && planes)
 		result = copy_plane(&caster->planes[PLANE_IDS], planes->ids);
-	const double prepare_ms = was_current ? 0 : gz_ns_to_ms(prepared_ns - start_ns);
+	const bool made = caster->scene.made != made_before;
+	const double prepare_ms = made ? gz_ns_to_ms(prepared_ns - start_ns) : 0;
 	if (result == GZ_OK && out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = shot->plan->ray_count,

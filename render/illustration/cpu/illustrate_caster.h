@@ -12,6 +12,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/data/clip_box.h"
 #include "render/illustration/shading_settings.h"
 #include "render/picture/camera.h"
 #include "render/picture/image.h"
@@ -39,9 +40,10 @@ struct gz_illustrate_shot {
 	const struct gz_camera *camera;
 	const struct gz_plan *plan;
 	const struct gz_shading_settings *settings;
-	double isovalue;    /**< of objects that are volumes */
-	uint32_t chosen_id; /**< object from which distances count; 0: none. Used if
-				 settings->object_distance is above 0 */
+	const struct gz_clip_box *clip; /**< only what lies in it shows; NULL: all */
+	double isovalue;                /**< of objects that are volumes */
+	uint32_t chosen_id;             /**< object from which distances count; 0: none. Used if
+					     settings->object_distance is above 0 */
 };
 
 /** Planes of a picture, for who draws on; each may be NULL. */
@@ -53,6 +55,11 @@ struct gz_illustrate_planes {
 /** Whether there is one in this build: it needs Embree. If not, gz_illustrate_caster_create() says
  *  so and fails with GZ_ERR_UNSUPPORTED. */
 bool gz_illustrate_caster_present(void);
+
+/** Check parameters before there is anything to show. @param params  not NULL @return the failures
+ *  of gz_illustrate_caster_create() but GZ_ERR_NO_MEM; logged */
+enum gz_result gz_illustrate_caster_check(const struct gz_backend_params *params,
+					  const struct gz_log *log);
 
 /**
  * Make a caster that shows nothing.

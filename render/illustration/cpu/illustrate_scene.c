@@ -150,6 +150,7 @@ static enum gz_result measure_scene(struct gz_illustrate_scene *scene, uint32_t 
 		result = measure_item(scene, i, chosen, workers);
 	if (result == GZ_OK)
 		scene->measured_id = chosen_id;
+	scene->made++;
 	return result;
 }
 
@@ -172,6 +173,7 @@ enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene, do
 		if (result != GZ_OK)
 			return result;
 		bound_scene(scene);
+		scene->made++;
 		scene->current = true;
 	}
 	if (chosen_id > 0 && scene->measured_id != chosen_id)

@@ -31,6 +31,7 @@ struct gz_illustrate_scene {
 	size_t importance_count;
 	uint32_t measured_id;           /**< object that distances_mm are to; 0: none */
 	double centre_mm[3], radius_mm; /**< of a ball around all vertices */
+	unsigned made;                  /**< how often any of it was made */
 	bool current;                   /**< tree, vertices and ball are those of meshes.shown */
 };
 

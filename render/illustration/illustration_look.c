@@ -1,0 +1,104 @@
+#include "render/illustration/illustration_look.h"
+
+#include <string.h>
+
+static const char *const source_names[] = { "combined", "single", NULL };
+
+/* In the order of alone[] below. */
+static const char *const show_names[] = {
+	"shading",    "plain",          "main-light", "plateau-light",   "grazing-light",
+	"shape",      "curvature",      "importance", "viewer-distance", "object-distance",
+	"edge-light", "overlap-shadow", "haze",       "lines",           NULL,
+};
+
+#define AT(field) offsetof(struct gz_illustration_look, field)
+
+const struct gz_option gz_illustration_look_options[] = {
+	{ "illustration.show", GZ_OPTION_CHOICE, AT(show), .choices = show_names,
+	  .preset = "shading",
+	  .help = "the shading map, the surface under a plain lamp, or one parameter alone" },
+	{ "illustration.settings", GZ_OPTION_CHOICE, AT(source), .choices = source_names,
+	  .preset = "combined",
+	  .help = "which settings count: the six combined ones, or the single ones of "
+		  "[shading_map]" },
+	{ "illustration.chosen_object", GZ_OPTION_STRING, AT(chosen_object), .max = GZ_NAME_SIZE,
+	  .preset = "", .help = "name of the object or label from which distances count" },
+};
+const size_t gz_illustration_look_option_count =
+	sizeof gz_illustration_look_options / sizeof gz_illustration_look_options[0];
+
+void gz_illustration_look_bind(struct gz_illustration_look *look,
+			       struct gz_option_binding out_bindings[GZ_ILLUSTRATION_BINDINGS])
+{
+	out_bindings[GZ_ILLUSTRATION_BINDING_LOOK] =
+		(struct gz_option_binding) { gz_illustration_look_options,
+					     gz_illustration_look_option_count, look, NULL };
+	out_bindings[GZ_ILLUSTRATION_BINDING_COMBINED] =
+		(struct gz_option_binding) { gz_illustration_options, gz_illustration_option_count,
+					     &look->combined, NULL };
+	out_bindings[GZ_ILLUSTRATION_BINDING_SINGLE] =
+		(struct gz_option_binding) { gz_shading_options, gz_shading_option_count,
+					     &look->single, NULL };
+}
+
+bool gz_illustration_look_valid(const struct gz_illustration_look *look)
+{
+	return gz_options_hold(gz_illustration_look_options, gz_illustration_look_option_count,
+			       look) &&
+	       gz_options_hold(gz_illustration_options, gz_illustration_option_count,
+			       &look->combined) &&
+	       gz_options_hold(gz_shading_options, gz_shading_option_count, &look->single);
+}
+
+bool gz_illustration_look_same(const struct gz_illustration_look *a,
+			       const struct gz_illustration_look *b)
+{
+	return gz_options_same(gz_illustration_look_options, gz_illustration_look_option_count, a,
+			       b) &&
+	       gz_options_same(gz_illustration_options, gz_illustration_option_count, &a->combined,
+			       &b->combined) &&
+	       gz_options_same(gz_shading_options, gz_shading_option_count, &a->single, &b->single);
+}
+
+#define WEIGHT(field) offsetof(struct gz_shading_settings, field)
+
+/* The weight of what is shown alone, and the brightness that the parameter changes: light is added
+ * to black, shadow and lines are taken from white. */
+static const struct {
+	size_t weight;
+	double flat;
+} alone[] = {
+	{ WEIGHT(plain_light), 0 },     { WEIGHT(main_light), 0 },
+	{ WEIGHT(plateau_light), 0 },   { WEIGHT(grazing_light), 0 },
+	{ WEIGHT(surface_shape), 0 },   { WEIGHT(curvature), 0 },
+	{ WEIGHT(importance), 0 },      { WEIGHT(viewer_distance), 0 },
+	{ WEIGHT(object_distance), 0 }, { WEIGHT(edge_light), 0 },
+	{ WEIGHT(overlap_shadow), 1 },  { WEIGHT(haze), 0 },
+	{ WEIGHT(lines), 1 },
+};
+
+enum { ALONE = sizeof alone / sizeof alone[0] };
+
+_Static_assert(sizeof show_names / sizeof show_names[0] == 1 + ALONE + 1,
+	       "a name for each, after the map and before the end");
+
+static void set_weight(struct gz_shading_settings *settings, size_t which, double weight)
+{
+	memcpy((char *)settings + alone[which].weight, &weight, sizeof weight);
+}
+
+void gz_illustration_look_resolve(const struct gz_illustration_look *look,
+				  struct gz_shading_settings *out_settings)
+{
+	*out_settings = look->single;
+	if (look->source == GZ_ILLUSTRATION_COMBINED)
+		gz_illustration_apply(&look->combined, out_settings);
+	if (look->show == GZ_SHOW_SHADING)
+		return;
+	for (size_t i = 0; i < ALONE; i++)
+		set_weight(out_settings, i, 0);
+	set_weight(out_settings, (size_t)look->show - GZ_SHOW_PLAIN, 1);
+	out_settings->flat = alone[look->show - GZ_SHOW_PLAIN].flat;
+	out_settings->equalisation = 0;
+	out_settings->haze_background = 1;
+}

@@ -1,0 +1,67 @@
+/**
+ * @file
+ * How a scene's surfaces are illustrated: the combined settings or the single ones, and what of a
+ * shading map a picture shows.
+ */
+#ifndef GZ_RENDER_ILLUSTRATION_ILLUSTRATION_LOOK_H
+#define GZ_RENDER_ILLUSTRATION_ILLUSTRATION_LOOK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/option.h"
+#include "base/sizes.h"
+#include "render/illustration/shading_settings.h"
+
+/** Which settings count. */
+enum gz_illustration_source {
+	GZ_ILLUSTRATION_COMBINED, /**< the six, and the single ones for which they do not stand */
+	GZ_ILLUSTRATION_SINGLE,   /**< the single ones alone */
+};
+
+/** What a picture shows. */
+enum gz_illustration_show {
+	GZ_SHOW_SHADING,         /**< the shading map */
+	GZ_SHOW_PLAIN,           /**< the surface under a lamp, without any other step */
+	GZ_SHOW_FIRST_PARAMETER, /**< from here on one parameter alone, by the names' order */
+};
+
+/** Sections [illustration] and [shading_map] of a scene. */
+struct gz_illustration_look {
+	int source;                       /**< enum gz_illustration_source */
+	int show;                         /**< enum gz_illustration_show, or a parameter */
+	char chosen_object[GZ_NAME_SIZE]; /**< from which distances count; empty: none */
+	struct gz_illustration_settings combined;
+	struct gz_shading_settings single;
+};
+
+/** Table over the first members of struct gz_illustration_look: "illustration.…". */
+extern const struct gz_option gz_illustration_look_options[];
+/** Its rows. */
+extern const size_t gz_illustration_look_option_count;
+
+/** The tables of gz_illustration_look_bind(). */
+enum gz_illustration_binding {
+	GZ_ILLUSTRATION_BINDING_LOOK,
+	GZ_ILLUSTRATION_BINDING_COMBINED,
+	GZ_ILLUSTRATION_BINDING_SINGLE,
+	GZ_ILLUSTRATION_BINDINGS,
+};
+
+/** Bind all tables to @p look, which is borrowed. */
+void gz_illustration_look_bind(struct gz_illustration_look *look,
+			       struct gz_option_binding out_bindings[GZ_ILLUSTRATION_BINDINGS]);
+
+/** Whether every field is within its range, as the tables would have it. */
+bool gz_illustration_look_valid(const struct gz_illustration_look *look);
+
+/** Whether every option has equal values. */
+bool gz_illustration_look_same(const struct gz_illustration_look *a,
+			       const struct gz_illustration_look *b);
+
+/** The single settings of a picture: what the look's settings make, or, if one parameter is shown,
+ *  that one alone over a flat surface, neither equalised nor with any other step. */
+void gz_illustration_look_resolve(const struct gz_illustration_look *look,
+				  struct gz_shading_settings *out_settings);
+
+#endif
