@@ -41,6 +41,9 @@ struct gz_surface_look {
 	bool shadows;            /**< what does not see the light has ambient light only */
 };
 
+/** How many of the table's first rows say which surface a volume has; the others how it looks. */
+#define GZ_ISOVALUE_OPTIONS 1
+
 /** Table over struct gz_surface_look: "isosurface.…". */
 extern const struct gz_option gz_surface_look_options[];
 extern const size_t gz_surface_look_option_count;

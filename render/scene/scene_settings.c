@@ -10,8 +10,10 @@
 _Static_assert(GZ_SCENE_LIGHT == GZ_SCENE_RAYS + 1 && GZ_SCENE_CLIP == GZ_SCENE_RAYS + 2 &&
 		       GZ_SCENE_ENVIRONMENT == GZ_SCENE_RAYS + 3 &&
 		       GZ_SCENE_ISOSURFACE == GZ_SCENE_RAYS + 4 &&
-		       GZ_SCENE_SLICES == GZ_SCENE_RAYS + 5 && GZ_RAY_BINDINGS == 6,
-	       "gz_ray_params_bind() fills six tables");
+		       GZ_SCENE_SLICES == GZ_SCENE_RAYS + 5 &&
+		       GZ_SCENE_ILLUSTRATION == GZ_SCENE_RAYS + 6 &&
+		       GZ_SCENE_SHADING_MAP == GZ_SCENE_RAYS + 8 && GZ_RAY_BINDINGS == 9,
+	       "gz_ray_params_bind() fills nine tables");
 _Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");
 
 static const char *const procedural_names[] = { "none", "shells", "supernova", "chameleon", NULL };

@@ -2,16 +2,21 @@
 
 #include <string.h>
 
+#include "render/illustration/technique/illustrate_technique.h"
 #include "render/plan/method.h"
 #include "render/raycast/raycast.h"
 #include "render/slices/slices_technique.h"
 #include "render/surface/isosurface_technique.h"
 
 static const enum gz_scene_table picked[GZ_VIEW_SCENE_TABLES] = {
-	GZ_SCENE_CAMERA, GZ_SCENE_IMAGE,       GZ_SCENE_RAYS,       GZ_SCENE_LIGHT,
-	GZ_SCENE_CLIP,   GZ_SCENE_ENVIRONMENT, GZ_SCENE_ISOSURFACE, GZ_SCENE_SLICES,
-	GZ_SCENE_LABELS, GZ_SCENE_FOVEATION,   GZ_SCENE_ATTENTION,  GZ_SCENE_TEMPORAL,
-	GZ_SCENE_VIEW,
+	GZ_SCENE_CAMERA,       GZ_SCENE_IMAGE,
+	GZ_SCENE_RAYS,         GZ_SCENE_LIGHT,
+	GZ_SCENE_CLIP,         GZ_SCENE_ENVIRONMENT,
+	GZ_SCENE_ISOSURFACE,   GZ_SCENE_SLICES,
+	GZ_SCENE_ILLUSTRATION, GZ_SCENE_ILLUSTRATION_COMBINED,
+	GZ_SCENE_SHADING_MAP,  GZ_SCENE_LABELS,
+	GZ_SCENE_FOVEATION,    GZ_SCENE_ATTENTION,
+	GZ_SCENE_TEMPORAL,     GZ_SCENE_VIEW,
 };
 
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
@@ -62,6 +67,23 @@ static bool by_samples(const struct gz_scene_settings *settings)
 static bool by_isosurface(const struct gz_scene_settings *settings)
 {
 	return gz_scene_draws_by(settings, &gz_isosurface_technique);
+}
+
+static bool by_illustrate(const struct gz_scene_settings *settings)
+{
+	return gz_scene_draws_by(settings, &gz_illustrate_technique);
+}
+
+/* The surface of a volume, whatever it looks like. */
+static bool by_surface(const struct gz_scene_settings *settings)
+{
+	return by_isosurface(settings) || by_illustrate(settings);
+}
+
+static bool by_combined(const struct gz_scene_settings *settings)
+{
+	return by_illustrate(settings) &&
+	       settings->rays.illustration.source == GZ_ILLUSTRATION_COMBINED;
 }
 
 static bool with_labels(const struct gz_scene_settings *settings)
@@ -195,7 +217,13 @@ static const struct {
 	{ "isosurface.refractive_index", by_glass },
 	{ "isosurface.bounces", by_glass },
 	{ "isosurface.shadows", by_matte },
+	{ "isosurface.isovalue", by_surface },
 	{ "isosurface.", by_isosurface },
+	{ "illustration.show", by_illustrate },
+	{ "illustration.settings", by_illustrate },
+	{ "illustration.chosen_object", by_illustrate },
+	{ "illustration.", by_combined },
+	{ "shading_map.", by_illustrate },
 	{ "environment.tile", on_the_floor },
 	{ "environment.bright", on_the_floor },
 	{ "environment.dark", on_the_floor },

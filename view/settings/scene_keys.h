@@ -13,7 +13,7 @@
 #include "render/scene/scene.h"
 
 /** Number of tables whose keys can change. */
-#define GZ_VIEW_SCENE_TABLES 13
+#define GZ_VIEW_SCENE_TABLES 16
 
 /** Upper limit of the number of keys in these tables; gz_view_scene_key_count() stays below it. */
 #define GZ_VIEW_SCENE_KEYS_MAX 256

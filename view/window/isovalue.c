@@ -26,7 +26,7 @@ static bool can_do_without_triangles(const struct gz_window *window,
 	const struct gz_volume *volume = &gz_frame_maker_scene(window->maker)->volume;
 	return !window->alone && !gaze->focus &&
 	       window->settings.rays.surface.source == GZ_SURFACE_TRIANGLES &&
-	       gz_setting_applies(&window->settings, "isosurface.isovalue") &&
+	       gz_setting_applies(&window->settings, "isosurface.source") &&
 	       gz_volume_voxel_count(volume) <= GZ_SURFACE_VOXELS_MAX;
 }
 

@@ -55,6 +55,7 @@ void gz_ray_params_bind(struct gz_ray_params *rays,
 					    &rays->slicing, NULL },
 	};
 	memcpy(out_bindings, bindings, sizeof bindings);
+	gz_illustration_look_bind(&rays->illustration, &out_bindings[GZ_RAY_BINDING_ILLUSTRATION]);
 }
 
 struct gz_ray_params gz_ray_params_default(void)
@@ -74,7 +75,8 @@ bool gz_ray_params_valid(const struct gz_ray_params *rays)
 	       gz_options_hold(gz_surface_look_options, gz_surface_look_option_count,
 			       &rays->surface) &&
 	       gz_environment_valid(&rays->environment) &&
-	       gz_options_hold(gz_slicing_options, gz_slicing_option_count, &rays->slicing);
+	       gz_options_hold(gz_slicing_options, gz_slicing_option_count, &rays->slicing) &&
+	       gz_illustration_look_valid(&rays->illustration);
 }
 
 bool gz_ray_params_lit(const struct gz_ray_params *rays)
@@ -110,7 +112,8 @@ bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_param
 	       gz_options_same(gz_environment_options, gz_environment_option_count, &a->environment,
 			       &b->environment) &&
 	       gz_options_same(gz_slicing_options, gz_slicing_option_count, &a->slicing,
-			       &b->slicing);
+			       &b->slicing) &&
+	       gz_illustration_look_same(&a->illustration, &b->illustration);
 }
 
 bool gz_ray_samples_nearest(const struct gz_ray_params *rays, const struct gz_volume *volume)

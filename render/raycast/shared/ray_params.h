@@ -12,6 +12,7 @@
 #include "base/option.h"
 #include "render/data/clip_box.h"
 #include "render/data/volume.h"
+#include "render/illustration/illustration_look.h"
 #include "render/light/environment.h"
 #include "render/light/light.h"
 #include "render/light/surface_look.h"
@@ -57,8 +58,9 @@ struct gz_ray_params {
 	struct gz_light light;
 	struct gz_clip_box clip;
 	struct gz_environment environment;
-	struct gz_surface_look surface; /**< for techniques that show surfaces */
-	struct gz_slicing slicing;      /**< for techniques that draw slices */
+	struct gz_surface_look surface;           /**< for techniques that show surfaces */
+	struct gz_slicing slicing;                /**< for techniques that draw slices */
+	struct gz_illustration_look illustration; /**< for techniques that illustrate */
 };
 
 /** Table over the members of struct gz_ray_params that are no structs: "render.…". */
@@ -66,7 +68,8 @@ extern const struct gz_option gz_ray_options[];
 extern const size_t gz_ray_option_count;
 
 /** The tables that gz_ray_params_bind() gives. Those of samples of a volume come first: the ray
- *  caster has them and no others. Those of surfaces follow, then those of slices. */
+ *  caster has them and no others. Those of surfaces follow, then those of slices, then those of
+ *  illustrations. */
 enum gz_ray_binding {
 	GZ_RAY_BINDING_RENDER,
 	GZ_RAY_BINDING_LIGHT,
@@ -76,11 +79,13 @@ enum gz_ray_binding {
 	GZ_RAY_BINDING_SURFACE = GZ_RAY_SAMPLE_BINDINGS,
 	GZ_RAY_SURFACE_BINDINGS,
 	GZ_RAY_BINDING_SLICES = GZ_RAY_SURFACE_BINDINGS,
-	GZ_RAY_BINDINGS,
+	GZ_RAY_BINDING_ILLUSTRATION,
+	GZ_RAY_BINDINGS = GZ_RAY_BINDING_ILLUSTRATION + GZ_ILLUSTRATION_BINDINGS,
 };
 
 /** Every table over the parts of @p rays: "render.…", "light.…", "clip.…", "environment.…",
- *  "isosurface.…", "slices.…". The bindings have no flags and borrow @p rays. */
+ *  "isosurface.…", "slices.…", "illustration.…", "shading_map.…". The bindings have no flags and
+ * borrow @p rays. */
 void gz_ray_params_bind(struct gz_ray_params *rays,
 			struct gz_option_binding out_bindings[GZ_RAY_BINDINGS]);
 

@@ -1,0 +1,148 @@
+/* The technique's drawer: a caster, and what it shows. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/illustration/cpu/illustrate_caster.h"
+#include "render/illustration/technique/illustrate_technique.h"
+#include "render/raycast/shared/ray_params.h"
+
+#define GZ_LOG_MODULE "illustrate"
+
+static const char cpu_name[] = "cpu";
+
+struct illustrate_drawer {
+	struct gz_drawer base;
+	struct gz_illustrate_caster *caster;
+	struct gz_object *objects; /* shown */
+	size_t count;
+};
+
+static struct illustrate_drawer *illustrate_of(struct gz_drawer *drawer)
+{
+	return (struct illustrate_drawer *)drawer;
+}
+
+static const struct illustrate_drawer *illustrate_read(const struct gz_drawer *drawer)
+{
+	return (const struct illustrate_drawer *)drawer;
+}
+
+static enum gz_result illustrate_show(struct gz_drawer *drawer, const struct gz_object *objects,
+				      size_t count)
+{
+	struct illustrate_drawer *self = illustrate_of(drawer);
+	struct gz_object *copy = malloc((count > 0 ? count : 1) * sizeof *copy);
+	if (!copy)
+		return GZ_ERR_NO_MEM;
+	memcpy(copy, objects, count * sizeof *copy);
+	const enum gz_result result = gz_illustrate_caster_show(self->caster, objects, NULL, count);
+	if (result != GZ_OK) {
+		free(copy);
+		return result;
+	}
+	free(self->objects);
+	self->objects = copy;
+	self->count = count;
+	return GZ_OK;
+}
+
+/* The number of the object with a name; 0: none has it. */
+static uint32_t find_named_object(const struct illustrate_drawer *self, const char *name)
+{
+	for (size_t i = 0; name[0] && i < self->count; i++)
+		if (self->objects[i].name && strcmp(self->objects[i].name, name) == 0)
+			return self->objects[i].id;
+	return 0;
+}
+
+static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
+				      struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	const struct illustrate_drawer *self = illustrate_read(drawer);
+	const struct gz_ray_params *rays = shot->settings;
+	struct gz_shading_settings settings;
+	if (!image || !gz_ray_params_valid(rays))
+		return GZ_ERR_INVAL;
+	gz_illustration_look_resolve(&rays->illustration, &settings);
+	const struct gz_illustrate_shot illustrated = {
+		.camera = shot->camera,
+		.plan = shot->plan,
+		.settings = &settings,
+		.clip = &rays->clip,
+		.isovalue = rays->surface.isovalue,
+		.chosen_id = find_named_object(self, rays->illustration.chosen_object),
+	};
+	return gz_illustrate_caster_draw(self->caster, &illustrated, image, NULL, out_stats);
+}
+
+static bool illustrate_keeps_on_device(const struct gz_drawer *drawer)
+{
+	(void)drawer;
+	return false;
+}
+
+static unsigned illustrate_picture_texture(const struct gz_drawer *drawer)
+{
+	(void)drawer;
+	return 0;
+}
+
+static const char *illustrate_backend(const struct gz_drawer *drawer)
+{
+	(void)drawer;
+	return cpu_name;
+}
+
+static const char *illustrate_describe(const struct gz_drawer *drawer)
+{
+	return gz_illustrate_caster_describe(illustrate_read(drawer)->caster);
+}
+
+static void illustrate_destroy(struct gz_drawer *drawer)
+{
+	struct illustrate_drawer *self = illustrate_of(drawer);
+	gz_illustrate_caster_destroy(&self->caster);
+	free(self->objects);
+	free(self);
+}
+
+static const struct gz_drawer_ops illustrate_ops = {
+	.show = illustrate_show,
+	.draw = illustrate_draw,
+	.keeps_on_device = illustrate_keeps_on_device,
+	.picture_texture = illustrate_picture_texture,
+	.backend = illustrate_backend,
+	.describe = illustrate_describe,
+	.destroy = illustrate_destroy,
+};
+
+enum gz_result gz_illustrate_check(const char *backend, const struct gz_backend_params *params,
+				   const struct gz_log *log)
+{
+	static const struct gz_backend_params defaults = { 0 };
+	const bool known = !backend || strcmp(backend, "auto") == 0 ||
+			   gz_technique_has_backend(&gz_illustrate_technique, backend);
+	if (known)
+		return gz_illustrate_caster_check(params ? params : &defaults, log);
+	gz_err(log, "illustrate has no backend '%s': there are auto, %s", backend, cpu_name);
+	return GZ_ERR_NOT_FOUND;
+}
+
+enum gz_result gz_illustrate_create(const char *backend, const struct gz_backend_params *params,
+				    const struct gz_log *log, struct gz_drawer **out_drawer)
+{
+	enum gz_result result = gz_illustrate_check(backend, params, log);
+	if (result != GZ_OK)
+		return result;
+	struct illustrate_drawer *self = calloc(1, sizeof *self);
+	if (!self)
+		return GZ_ERR_NO_MEM;
+	self->base.ops = &illustrate_ops;
+	result = gz_illustrate_caster_create(params, log, &self->caster);
+	if (result != GZ_OK) {
+		free(self);
+		return result;
+	}
+	*out_drawer = &self->base;
+	return GZ_OK;
+}
