@@ -34,7 +34,7 @@ struct gz_series_point {
 	double cast_ms;  /**< likewise */
 	double rays, samples;
 	struct gz_study_errors errors[GZ_ERROR_REFERENCES];
-	double flicker;
+	double flicker, turning_error;
 };
 
 /** One variant of one group. */
@@ -55,7 +55,7 @@ struct gz_series {
 	/** Rays over the acuity bound's rays at the same points; NaN without a bound. */
 	double bound_share;
 	struct gz_error_summary errors[GZ_ERROR_REFERENCES][GZ_ERROR_MEASURES];
-	struct gz_distribution flicker; /**< over points */
+	struct gz_distribution flicker, turning_error; /**< over points */
 	/** On the Pareto front: no other series is better in both time and mean error and none
 	 *  is as good in one and better in the other. */
 	bool front[GZ_ERROR_REFERENCES][GZ_ERROR_MEASURES];

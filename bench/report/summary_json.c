@@ -87,6 +87,7 @@ static json_t *series_to_json(const struct gz_study *study, const struct gz_seri
 					    distribution(&series->columns[id]));
 	json_object_set_new(object, "overhead_ms", distribution(&series->overhead_ms));
 	json_object_set_new(object, "flicker", distribution(&series->flicker));
+	json_object_set_new(object, "turning_error", distribution(&series->turning_error));
 	json_object_set_new(object, "errors", errors(series));
 	return object;
 }

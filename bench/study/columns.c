@@ -58,6 +58,9 @@ const struct gz_study_column gz_study_columns[GZ_STUDY_COLUMNS] = {
 	[GZ_COLUMN_PREPARE] = { TIME(prepare_ms), .title = "prepare", .later = true,
 		.meaning = "preparation that the technique keeps for later frames; the first counted "
 			   "frame has that of the warm-up frames, too" },
+	[GZ_COLUMN_TURNING] = { ERROR(turning_error), .unit = "of 255", .later = true,
+		.meaning = "what the eye sees come and go that does not in `standard`, while the camera "
+			   "turns" },
 };
 /* clang-format on */
 

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/command.h"
+#include "bench/metrics/temporal.h"
 #include "bench/study/errors.h"
 #include "bench/study/stage.h"
 #include "bench/study/study_folder.h"
@@ -15,6 +16,11 @@
 /* Degrees that the camera turns between two rounds of frames, so that no frame equals the one
  * before by accident. */
 #define TURN_DEG 0.01
+
+/* Degrees a frame, and frames a second, of the camera that turns while changes over time are
+ * measured. Chosen: 15 degrees a second, as somebody turns a volume slowly by the mouse. */
+#define SEEN_TURN_DEG 0.25
+#define SEEN_FPS      60
 
 /* ---- measuring a unit ---- */
 
@@ -43,6 +49,9 @@ struct measurer {
 	bool has_whole;             /* whole is of something */
 	struct gz_error_weights weights;
 	struct gz_map scratch;
+	struct gz_map response, standard_response; /* to pictures while the camera turns */
+	struct shown response_of;                  /* what standard_response is of */
+	bool has_response;                         /* standard_response is of something */
 };
 
 /* A unit in the making. */
@@ -91,6 +100,8 @@ static void measurer_destroy(struct measurer **measurer)
 	gz_error_maps_free(&self->whole);
 	gz_error_weights_free(&self->weights);
 	gz_map_free(&self->scratch);
+	gz_map_free(&self->response);
+	gz_map_free(&self->standard_response);
 	free(self);
 	*measurer = NULL;
 }
@@ -260,6 +271,57 @@ static enum gz_result find_flicker(struct measurer *measurer, const struct unit 
 	return GZ_OK;
 }
 
+/* The response of the eye's transient channel to a variant's pictures while the camera turns. */
+static enum gz_result find_response(struct measurer *measurer, const struct unit *unit,
+				    size_t variant, struct gz_map *response)
+{
+	double weights[GZ_TEMPORAL_FRAMES];
+	struct gz_camera camera = unit->camera;
+	gz_temporal_weights(SEEN_FPS, weights);
+	enum gz_result result = gz_map_resize(response, unit->width, unit->height);
+	if (result == GZ_OK)
+		memset(response->values, 0,
+		       (size_t)unit->width * (size_t)unit->height * sizeof *response->values);
+	for (int i = 0; i < GZ_TEMPORAL_FRAMES && result == GZ_OK; i++) {
+		const struct asked_picture asked = { variant, &camera, unit->gaze, false,
+						     &measurer->trembled };
+		result = gz_command_interrupted()
+				 ? GZ_ERR_CANCELLED
+				 : make_variant_picture(measurer, unit, &asked, NULL);
+		if (result == GZ_OK)
+			gz_map_add_luma(response, &measurer->trembled, weights[i]);
+		gz_camera_turn(&camera, SEEN_TURN_DEG);
+	}
+	return result;
+}
+
+/* The response to standard: the same wherever the gaze is. */
+static enum gz_result find_standard_response(struct measurer *measurer, const struct unit *unit)
+{
+	if (measurer->has_response && same_picture(&measurer->response_of, &unit->shown) &&
+	    measurer->response_of.backend == unit->shown.backend &&
+	    !gz_foveation_follows_gaze(&measurer->stage->variants[0].foveation))
+		return GZ_OK;
+	const enum gz_result result =
+		find_response(measurer, unit, 0, &measurer->standard_response);
+	measurer->has_response = result == GZ_OK;
+	measurer->response_of = unit->shown;
+	return result;
+}
+
+static enum gz_result find_turning_error(struct measurer *measurer, const struct unit *unit,
+					 size_t variant, double *out_error)
+{
+	enum gz_result result = find_standard_response(measurer, unit);
+	if (result == GZ_OK)
+		result = find_response(measurer, unit, variant, &measurer->response);
+	if (result == GZ_OK)
+		*out_error = gz_map_weighted_difference(&measurer->response,
+							&measurer->standard_response,
+							&measurer->weights.perceived);
+	return result;
+}
+
 /* Standard against converged: the same maps wherever the gaze is. */
 static enum gz_result measure_standard(struct measurer *measurer, const struct unit *unit,
 				       struct gz_study_row *row)
@@ -283,6 +345,7 @@ static enum gz_result measure_standard(struct measurer *measurer, const struct u
 	measurer->whole_of = unit->shown;
 	const bool has_ssim = unit->width >= 11 && unit->height >= 11;
 	row->standard = gz_errors_none(&measurer->weights, has_ssim);
+	row->turning_error = 0;
 	if (converged)
 		row->converged = gz_error_maps_weigh(&measurer->whole, &measurer->weights);
 	return GZ_OK;
@@ -311,6 +374,8 @@ static enum gz_result measure_variant(struct measurer *measurer, const struct un
 		result = compare_with(measurer, unit, &measurer->converged, &row->converged);
 	if (result == GZ_OK)
 		result = find_flicker(measurer, unit, variant, &measurer->test, &row->flicker);
+	if (result == GZ_OK)
+		result = find_turning_error(measurer, unit, variant, &row->turning_error);
 	return result;
 }
 
@@ -335,6 +400,7 @@ static enum gz_result measure_errors(struct measurer *measurer, const struct uni
 			first[k].converged = first->converged;
 			first[k].standard = first->standard;
 			first[k].flicker = first->flicker;
+			first[k].turning_error = first->turning_error;
 			first[k].reference_db = first->reference_db;
 		}
 	}

@@ -61,6 +61,7 @@ struct gz_study_row gz_study_unit_row(const struct gz_study *study, size_t unit,
 		.converged = gz_study_errors_unmeasured(),
 		.standard = gz_study_errors_unmeasured(),
 		.flicker = NAN,
+		.turning_error = NAN,
 		.reference_db = NAN,
 	};
 	row.point = (uint32_t)(unit % study->point_count);

@@ -109,6 +109,11 @@ struct gz_study_row {
 	/** Mean change of the picture while the gaze trembles by a pixel and nothing else moves,
 	 *  weighted as perceived errors are, in levels of 255; NaN where it was not measured. */
 	double flicker;
+	/** How much the eye sees come and go that does not in pictures of standard, while the
+	 * camera turns and the gaze rests (metrics/temporal.h): weighted as perceived errors are,
+	 * in levels of 255. NaN where it was not measured, and in studies of versions that did not.
+	 */
+	double turning_error;
 	/** How far the converged picture is from one of half its step, PSNR: what its own error may
 	 *  be; NaN where there is no converged picture. */
 	double reference_db;

@@ -111,7 +111,8 @@ void make_rows(struct gz_study *study, made_row *measure)
 		row->size = (uint16_t)(rest % study->size_count);
 		row->scene = (uint16_t)(rest / study->size_count);
 		row->gaze = study->points[row->point].gaze;
-		row->gpu_ms = row->prepare_ms = row->flicker = row->reference_db = NAN;
+		row->gpu_ms = row->prepare_ms = NAN;
+		row->flicker = row->turning_error = row->reference_db = NAN;
 		row->converged = row->standard = no_errors();
 		measure(study, row);
 	}

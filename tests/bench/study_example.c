@@ -78,6 +78,7 @@ static void fill_rows(struct gz_study *study)
 		row->converged = example_errors(number);
 		row->standard = example_errors(number + 1);
 		row->flicker = number / 8;
+		row->turning_error = number / 32;
 		row->reference_db = 70;
 	}
 }

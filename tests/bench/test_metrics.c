@@ -8,6 +8,7 @@
 
 #include "bench/metrics/approximate.h"
 #include "bench/metrics/metrics.h"
+#include "bench/metrics/temporal.h"
 
 /* What FLIP was measured at: 0.7 m from a 0.7 m wide display of 3840 pixels. */
 #define PX_PER_DEG 67.02064327658226
@@ -259,6 +260,61 @@ static void weights_follow_the_eccentricity(void **state)
 	gz_map_free(&rest);
 }
 
+/* Amplitude of the response to a sine, by pictures at 60 a second. */
+static double response_to(double hertz)
+{
+	double weights[GZ_TEMPORAL_FRAMES], real = 0, imaginary = 0;
+	gz_temporal_weights(60, weights);
+	for (int i = 0; i < GZ_TEMPORAL_FRAMES; i++) {
+		real += weights[i] * cos(2 * M_PI * hertz * i / 60);
+		imaginary += weights[i] * sin(2 * M_PI * hertz * i / 60);
+	}
+	return hypot(real, imaginary);
+}
+
+static void eye_sees_changes_of_8_hertz_best_and_constants_not(void **state)
+{
+	(void)state;
+	near(response_to(0), 0, 1e-12);
+	near(response_to(8), 1, 0.02);
+	assert_true(response_to(1) < 0.25);
+	assert_true(response_to(3) < response_to(8) && response_to(20) < 0.5 * response_to(8));
+	assert_true(response_to(30) < 0.1);
+}
+
+static void fill_map(struct gz_map *map, float even, float odd)
+{
+	assert_int_equal(gz_map_resize(map, 4, 3), GZ_OK);
+	for (int i = 0; i < 12; i++)
+		map->values[i] = i % 2 ? odd : even;
+}
+
+static void response_is_that_to_luma_frame_by_frame(void **state)
+{
+	(void)state;
+	struct gz_image still = plain(4, 3, 200, 100, 50), other = plain(4, 3, 210, 100, 50);
+	struct gz_map response = { 0 }, none = { 0 }, weights = { 0 };
+	double frames[GZ_TEMPORAL_FRAMES];
+	gz_temporal_weights(60, frames);
+	fill_map(&response, 0, 0);
+	fill_map(&none, 0, 0);
+	fill_map(&weights, 1, 0);
+	for (int i = 0; i < GZ_TEMPORAL_FRAMES; i++) {
+		gz_map_add_luma(&none, &still, frames[i]);
+		gz_map_add_luma(&response, i == 4 ? &other : &still, frames[i]);
+	}
+	near((double)none.values[0], 0, 1e-4);
+	near(gz_map_weighted_difference(&response, &none, &weights), fabs(2.126 * frames[4]), 1e-4);
+	fill_map(&response, 0, 9);
+	fill_map(&none, 2, 0);
+	near(gz_map_weighted_difference(&response, &none, &weights), 2, 0);
+	gz_map_free(&response);
+	gz_map_free(&none);
+	gz_map_free(&weights);
+	gz_image_free(&still);
+	gz_image_free(&other);
+}
+
 TEST_SUITE(metrics)
 {
 	const struct CMUnitTest tests[] = {
@@ -271,6 +327,8 @@ TEST_SUITE(metrics)
 		cmocka_unit_test(pictures_of_different_size_are_refused),
 		cmocka_unit_test(every_number_of_threads_gives_the_same_bits),
 		cmocka_unit_test(weights_follow_the_eccentricity),
+		cmocka_unit_test(eye_sees_changes_of_8_hertz_best_and_constants_not),
+		cmocka_unit_test(response_is_that_to_luma_frame_by_frame),
 	};
 	return cmocka_run_group_tests(tests, start_workers, end_workers);
 }

@@ -243,8 +243,8 @@ static void damaged_rows_are_refused_with_their_line(void **state)
 		{ "mdc,0,0,1,", "mdc,0,0,2,", "frames.csv:5: frame is '2' where '1' follows" },
 		{ ",0.125,", ",-0.125,", "frames.csv:2: plan_ms is '-0.125'" },
 		{ ",0.125,", ",1 2,", "frames.csv:2: plan_ms is '1 2'" },
-		{ ",70,0\n", ",70\n", "frames.csv:2: prepare_ms is ''" },
-		{ ",70,0\n", ",70,0,1\n", "frames.csv:2: there is more than prepare_ms" },
+		{ ",70,0,0\n", ",70,0\n", "frames.csv:2: turning_error is ''" },
+		{ ",70,0,0\n", ",70,0,0,1\n", "frames.csv:2: there is more than turning_error" },
 		{ "\"head, \"\"old\"\"\",hard", "\"head,hard", "frames.csv:50: scene" },
 		{ "scene,transfer", "scene,transfers", "frames.csv:1: does not name the columns" },
 		{ ",plan_ms,", ",", "frames.csv:1: does not name the columns" },
@@ -274,17 +274,19 @@ static void drop_last_column(void)
 	free(text);
 }
 
-static void older_study_without_prepare_ms_is_read_and_not_resumed(void **state)
+static void older_study_without_later_columns_is_read_and_not_resumed(void **state)
 {
 	(void)state;
 	struct gz_study study = written(0, 1), read;
 	struct gz_study_writer *writer;
 	size_t done;
 	drop_last_column();
+	drop_last_column();
 	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
 	for (size_t i = 0; i < study.row_count; i++) {
 		assert_true(isnan(read.rows[i].prepare_ms));
-		study.rows[i].prepare_ms = NAN;
+		assert_true(isnan(read.rows[i].turning_error));
+		study.rows[i].prepare_ms = study.rows[i].turning_error = NAN;
 	}
 	same_study(&read, &study);
 	gz_study_free(&read);
@@ -503,7 +505,7 @@ TEST_SUITE(study_folder)
 				       name_folder),
 		cmocka_unit_test_setup(complete_study_without_all_rows_is_refused, name_folder),
 		cmocka_unit_test_setup(damaged_rows_are_refused_with_their_line, name_folder),
-		cmocka_unit_test_setup(older_study_without_prepare_ms_is_read_and_not_resumed,
+		cmocka_unit_test_setup(older_study_without_later_columns_is_read_and_not_resumed,
 				       name_folder),
 		cmocka_unit_test(columns_stand_in_the_documentation_as_in_the_table),
 		cmocka_unit_test_setup(rows_beyond_the_last_are_refused, name_folder),

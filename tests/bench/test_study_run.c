@@ -162,6 +162,7 @@ static void same_rows(const struct gz_study *a, const struct gz_study *b)
 		same_errors(&x->converged, &y->converged);
 		same_errors(&x->standard, &y->standard);
 		same_number(x->flicker, y->flicker);
+		same_number(x->turning_error, y->turning_error);
 		same_number(x->reference_db, y->reference_db);
 	}
 }
@@ -191,10 +192,12 @@ static void run_measures_each_frame_of_each_variant_at_each_point(void **state)
 			same_number(row->standard.ssim, 1);
 			same_number(row->standard.foveal_flip, 0);
 			same_number(row->flicker, 0);
+			same_number(row->turning_error, 0);
 			assert_true(row->converged.psnr_db > 25 && !isinf(row->converged.psnr_db));
 		} else if (row->variant == 2) {
 			assert_true(row->rays < 48 * 32);
 			assert_true(row->standard.flip > 0);
+			assert_true(row->turning_error > 0 && row->turning_error < 255);
 		}
 	}
 	assert_true(study.bound_rays[0] > 0 && study.bound_rays[0] <= 1);

@@ -75,6 +75,7 @@ static void measure(const struct gz_study *study, struct gz_study_row *row)
 	if (row->variant > 0) {
 		row->standard = errors_of(error * 0.8);
 		row->flicker = 8 * error;
+		row->turning_error = 20 * error;
 	}
 }
 
