@@ -25,9 +25,10 @@ extern const struct gz_command gazebench_merge;      /**< join the shards of a s
 extern const struct gz_command gazebench_report;     /**< charts, tables, report.html */
 extern const struct gz_command gazebench_suggest;    /**< the cheapest setting within a bound */
 extern const struct gz_command gazebench_accumulate; /**< gain of keeping earlier frames */
-extern const struct gz_command gazebench_compare;    /**< how far two pictures are apart */
-extern const struct gz_command gazebench_filter;     /**< lag and jitter of the gaze filter */
-extern const struct gz_command gazebench_stability;  /**< where methods fail, on a scene */
+extern const struct gz_command gazebench_clip;      /**< sequences for metrics of moving pictures */
+extern const struct gz_command gazebench_compare;   /**< how far two pictures are apart */
+extern const struct gz_command gazebench_filter;    /**< lag and jitter of the gaze filter */
+extern const struct gz_command gazebench_stability; /**< where methods fail, on a scene */
 extern const struct gz_command gazebench_techniques; /**< the techniques compared */
 
 #endif

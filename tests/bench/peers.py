@@ -3,12 +3,15 @@
 peers.py GAZEVIEW SCENES-FOLDER PEERS-FOLDER HELPERS-FOLDER
 """
 
+import json
+import os
 import sys
 import tempfile
 import unittest
 
 sys.path[:0] = sys.argv[3:5]
 from bauer2018 import camera_lines
+from fovvideovdp import Judge, picture_paths, read_clip
 from gazeview_frames import GAZES, Series, run_gazeview
 from picture import read_png, write_scene
 
@@ -54,6 +57,24 @@ class Peers(unittest.TestCase):
         self.assertEqual(numbers["look_at"], [0, 0.25, 0])
         self.assertEqual(numbers["up"], [0, 1, 0])
         self.assertAlmostEqual(numbers["fov_deg"][0], 59.979351, places=5)
+
+    def test_clip_is_read_as_the_metric_needs_it(self):
+        clip = {"format": "gazecast clip", "version": 1, "frames": 2, "pictures": "frame-%04d.png", "size": [40, 30],
+                "display": {"mm": [400, 300], "distance_mm": 600}, "gaze_px": [[20, 15], [21, 15]]}
+        with tempfile.TemporaryDirectory() as folder:
+            def write(changed):
+                with open(os.path.join(folder, "clip.json"), "w", encoding="utf-8") as file:
+                    json.dump(dict(clip, **changed), file)
+
+            write({})
+            read = read_clip(folder)
+            self.assertEqual(read, clip)
+            self.assertAlmostEqual(Judge.diagonal_inches(read), 500 / 25.4)
+            self.assertEqual(picture_paths(folder, read, {"folder": "1-acuity"}, 2)[1],
+                             os.path.join(folder, "1-acuity", "frame-0001.png"))
+            for changed in {"version": 2}, {"format": "other"}, {"gaze_px": [[20, 15]]}:
+                write(changed)
+                self.assertRaises(SystemExit, read_clip, folder)
 
 
 if __name__ == "__main__":
