@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <sys/eventfd.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,7 +23,8 @@ struct gz_board_server {
 	struct gz_board *board;
 	char path[GZ_PATH_SIZE]; /* of the socket */
 	int door;
-	int quit_fd; /* eventfd */
+	bool was_handed; /* the service manager keeps the socket's file */
+	int quit_fd;     /* eventfd */
 	pthread_t thread;
 	bool has_thread;
 };
@@ -58,12 +60,18 @@ static void *board_server_run(void *user)
 	}
 }
 
-static enum gz_result open_door(struct gz_board_server *server, const char *directory)
+static enum gz_result open_door(struct gz_board_server *server, const char *directory,
+				struct gz_handed_sockets *handed)
 {
 	enum gz_result result = gz_text_print(server->path, sizeof server->path, "%s/%s", directory,
 					      GZ_BOARD_DOOR_NAME);
-	if (result == GZ_OK)
-		result = gz_board_door_open(server->path, &server->door);
+	if (result != GZ_OK)
+		return result;
+	server->door = gz_handed_sockets_take(handed, server->path, SOCK_SEQPACKET);
+	server->was_handed = server->door >= 0;
+	if (server->was_handed)
+		return GZ_OK;
+	result = gz_board_door_open(server->path, &server->door);
 	if (result != GZ_OK)
 		return result;
 	mode_t mode = gz_runtime_directory_is_shared(directory) ? 0660 : 0600;
@@ -80,7 +88,8 @@ static enum gz_result start_board_thread(struct gz_board_server *server)
 	return GZ_OK;
 }
 
-enum gz_result gz_board_server_create(const char *directory, struct gz_board_server **out_server)
+enum gz_result gz_board_server_create(const char *directory, struct gz_handed_sockets *handed,
+				      struct gz_board_server **out_server)
 {
 	struct gz_board_server *server = calloc(1, sizeof *server);
 	if (!server)
@@ -88,7 +97,7 @@ enum gz_result gz_board_server_create(const char *directory, struct gz_board_ser
 	server->door = server->quit_fd = -1;
 	enum gz_result result = gz_board_create(GZ_BOARD_SIZE, &server->board);
 	if (result == GZ_OK)
-		result = open_door(server, directory);
+		result = open_door(server, directory, handed);
 	if (result == GZ_OK)
 		result = start_board_thread(server);
 	if (result != GZ_OK) {
@@ -113,7 +122,8 @@ void gz_board_server_destroy(struct gz_board_server **server)
 	if (s->has_thread && write(s->quit_fd, &one, sizeof one) == sizeof one)
 		pthread_join(s->thread, NULL);
 	if (s->door >= 0) {
-		unlink(s->path);
+		if (!s->was_handed)
+			unlink(s->path);
 		close(s->door);
 	}
 	if (s->quit_fd >= 0)

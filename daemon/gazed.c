@@ -10,6 +10,7 @@
 #include <zmq.h>
 
 #include "daemon/config.h"
+#include "daemon/handed_sockets.h"
 #include "daemon/lsl/lsl_outlet.h"
 #include "daemon/process.h"
 #include "daemon/publisher.h"
@@ -33,6 +34,7 @@ struct daemon {
 	int lock_fd;
 	int signal_fd;
 	struct gz_notify notify;
+	struct gz_handed_sockets handed;
 	void *context;
 	struct gz_network network;
 	struct gz_publisher *publisher;
@@ -87,6 +89,7 @@ static enum gz_result open_daemon_sockets(struct daemon *daemon)
 	daemon->network = (struct gz_network) {
 		.config = &daemon->config,
 		.directory = daemon->directory,
+		.handed = &daemon->handed,
 		.context = daemon->context,
 		.log = &daemon->log,
 	};
@@ -111,6 +114,7 @@ static enum gz_result open_daemon_sockets(struct daemon *daemon)
 		.log = &daemon->log,
 	};
 	result = gz_requests_create(&parts, &daemon->requests);
+	gz_handed_sockets_close(&daemon->handed, &daemon->log);
 	return result == GZ_OK ? gz_guard_start(daemon->network.guard) : result;
 }
 
@@ -137,6 +141,7 @@ static enum gz_result record_from_start(struct daemon *daemon)
 static enum gz_result start_daemon(struct daemon *daemon)
 {
 	gz_notify_open(&daemon->notify, &daemon->log);
+	gz_handed_sockets_take_over(&daemon->handed, &daemon->log);
 	gz_open_files_allow(&daemon->log);
 	enum gz_result result = gz_privileges_drop(daemon->config.user, &daemon->log);
 	if (result == GZ_OK)

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <zmq.h>
 
@@ -107,6 +108,25 @@ void gz_network_endpoint(const struct gz_network *network, int port, char text[G
 		snprintf(text, GZ_ENDPOINT_SIZE, "tcp://%s:*", network->config->address);
 }
 
+static bool set_socket_option(void *socket, int option, int value)
+{
+	return zmq_setsockopt(socket, option, &value, sizeof value) == 0;
+}
+
+/* Let libzmq accept connections at a socket that is bound already, and whose file stays. It closes
+ * @p fd. */
+static enum gz_result take_over_local(const struct gz_network *network, void *socket,
+				      const char *endpoint, int fd)
+{
+	bool taken = set_socket_option(socket, ZMQ_USE_FD, fd) && zmq_bind(socket, endpoint) == 0;
+	const int error = errno;
+	if (set_socket_option(socket, ZMQ_USE_FD, -1) && taken)
+		return GZ_OK;
+	gz_err(network->log, "cannot take over %s from the service manager: %s", endpoint,
+	       zmq_strerror(error));
+	return GZ_ERR_IO;
+}
+
 static enum gz_result bind_local(const struct gz_network *network, void *socket, const char *name,
 				 struct gz_connections *connections)
 {
@@ -121,7 +141,20 @@ static enum gz_result bind_local(const struct gz_network *network, void *socket,
 		       network->directory);
 		return result;
 	}
-	gz_guard_open_local_door(connections, endpoint + sizeof scheme - 1);
+	const char *path = endpoint + sizeof scheme - 1;
+	gz_guard_open_local_door(connections, path);
+	const int handed = gz_handed_sockets_take(network->handed, path, SOCK_STREAM);
+	if (handed >= 0)
+		return take_over_local(network, socket, endpoint, handed);
+	if (gz_socket_is_listened_at(path)) {
+		gz_err(network->log,
+		       "a service manager listens at %s to start gazed: use its daemon (systemctl "
+		       "--user start gazed), stop that (systemctl --user stop gazed.socket), or "
+		       "set "
+		       "GAZECAST_RUNTIME_DIR to another directory for this one",
+		       path);
+		return GZ_ERR_BUSY;
+	}
 	if (zmq_bind(socket, endpoint) != 0) {
 		gz_err(network->log,
 		       "cannot bind %s: %s; set GAZECAST_RUNTIME_DIR to another directory",
@@ -129,16 +162,10 @@ static enum gz_result bind_local(const struct gz_network *network, void *socket,
 		return errno == EADDRINUSE ? GZ_ERR_BUSY : GZ_ERR_IO;
 	}
 	/* The directory's permissions decide who may enter; connecting needs write permission. */
-	if (chmod(endpoint + sizeof scheme - 1,
-		  gz_runtime_directory_is_shared(network->directory) ? 0660 : 0600) == 0)
+	if (chmod(path, gz_runtime_directory_is_shared(network->directory) ? 0660 : 0600) == 0)
 		return GZ_OK;
 	gz_err(network->log, "cannot set the permissions of %s: %s", endpoint, strerror(errno));
 	return GZ_ERR_IO;
-}
-
-static bool set_socket_option(void *socket, int option, int value)
-{
-	return zmq_setsockopt(socket, option, &value, sizeof value) == 0;
 }
 
 /* Require keys for endpoints that are bound from now on. The local one, bound before, needs none.

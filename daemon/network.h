@@ -10,13 +10,15 @@
 #include "base/result.h"
 #include "daemon/config.h"
 #include "daemon/guard.h"
+#include "daemon/handed_sockets.h"
 #include "protocol/key.h"
 
 /** How sockets are bound. Borrowed by each function that binds one. */
 struct gz_network {
 	const struct gz_config *config;
-	const char *directory; /**< of local sockets */
-	void *context;         /**< ZeroMQ */
+	const char *directory;            /**< of local sockets */
+	struct gz_handed_sockets *handed; /**< bound by a service manager; NULL: none */
+	void *context;                    /**< ZeroMQ */
 	struct gz_guard *guard;
 	struct gz_key_pair keys; /**< the daemon's, with tcp = curve */
 	const struct gz_log *log;
@@ -34,14 +36,15 @@ struct gz_network {
 enum gz_result gz_network_open(struct gz_network *network);
 
 /**
- * Watch @p socket, bind it as @p name in the runtime directory, and over TCP if the configuration
- * allows it.
+ * Watch @p socket, bind it as @p name in the runtime directory, or take over the local socket that
+ * a service manager has bound there, and bind it over TCP if the configuration allows it.
  *
  * @param name      "stream", "latest", "control" or "inlet"
  * @param endpoint  of TCP
  * @param[out] out_port  the TCP port, 0 without TCP
  * @param[out] out_connections  as gz_guard_watch(); may be NULL
- * @retval GZ_ERR_BUSY         an endpoint is in use; logged with the remedy
+ * @retval GZ_ERR_BUSY         an endpoint is in use, or a service manager listens at the local one
+ *                             for another daemon; logged with the remedy
  * @retval GZ_ERR_INVAL        the TCP endpoint cannot be bound; logged with the remedy
  * @retval GZ_ERR_FULL         the path of the runtime directory is too long; logged
  * @retval GZ_ERR_UNSUPPORTED  libzmq refuses the keys; logged

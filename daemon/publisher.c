@@ -169,9 +169,10 @@ static enum gz_result open_channels(struct gz_publisher *publisher,
 }
 
 /* Readers do without the board where there is none. */
-static void open_board(struct gz_publisher *publisher, const char *directory)
+static void open_board(struct gz_publisher *publisher, const struct gz_network *network)
 {
-	enum gz_result result = gz_board_server_create(directory, &publisher->board_server);
+	enum gz_result result = gz_board_server_create(network->directory, network->handed,
+						       &publisher->board_server);
 	if (result == GZ_OK)
 		publisher->board = gz_board_server_board(publisher->board_server);
 	else
@@ -192,7 +193,7 @@ enum gz_result gz_publisher_create(const struct gz_network *network,
 		gz_publisher_destroy(&publisher);
 		return result;
 	}
-	open_board(publisher, network->directory);
+	open_board(publisher, network);
 	*out_publisher = publisher;
 	return GZ_OK;
 }

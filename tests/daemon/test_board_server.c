@@ -32,7 +32,7 @@ static int remove_directory(void **state)
 static struct gz_board_server *create_server(void)
 {
 	struct gz_board_server *server = NULL;
-	assert_int_equal(gz_board_server_create(directory, &server), GZ_OK);
+	assert_int_equal(gz_board_server_create(directory, NULL, &server), GZ_OK);
 	return server;
 }
 
@@ -82,8 +82,8 @@ static void board_server_needs_a_directory(void **state)
 	char longer[200];
 	memset(longer, 'x', sizeof longer - 1);
 	longer[sizeof longer - 1] = '\0';
-	assert_int_equal(gz_board_server_create("/nonexistent", &server), GZ_ERR_IO);
-	assert_int_equal(gz_board_server_create(longer, &server), GZ_ERR_FULL);
+	assert_int_equal(gz_board_server_create("/nonexistent", NULL, &server), GZ_ERR_IO);
+	assert_int_equal(gz_board_server_create(longer, NULL, &server), GZ_ERR_FULL);
 	assert_null(server);
 }
 

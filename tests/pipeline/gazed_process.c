@@ -107,6 +107,19 @@ static void make_arguments(const struct gazed_start *start, const char **argv)
 	argv[argc] = NULL;
 }
 
+/* Runs in the child: hand over sockets as systemd does. LISTEN_PID is there, so nothing is
+ * allocated. */
+static void hand_over(const struct gazed_start *start)
+{
+	static char pid[32];
+	for (int i = 0; i < start->handed_count; i++) {
+		if (dup2(start->handed[i], STDERR_FILENO + 1 + i) < 0)
+			_exit(126);
+	}
+	snprintf(pid, sizeof pid, "LISTEN_PID=%ld", (long)getpid());
+	putenv(pid);
+}
+
 /* Runs in the child: system calls only. */
 static void become_gazed(const struct gazed_start *start, const struct gazed_process *process,
 			 const char **argv)
@@ -119,6 +132,7 @@ static void become_gazed(const struct gazed_start *start, const struct gazed_pro
 	if (start->user && (setgroups(1, &start->group) != 0 || setgid(start->user) != 0 ||
 			    setuid(start->user) != 0))
 		_exit(126);
+	hand_over(start);
 	for (fd = 0; start->without_streams && fd <= STDERR_FILENO; fd++)
 		close(fd);
 	execv(GAZED_PROGRAM, (char **)argv);
@@ -128,10 +142,14 @@ static void become_gazed(const struct gazed_start *start, const struct gazed_pro
 void gazed_spawn(const struct gazed_start *start, struct gazed_process *out)
 {
 	static int number;
+	char count[16];
 	const char *argv[ARGUMENTS_MAX];
 	make_arguments(start, argv);
 	setenv("GAZECAST_RUNTIME_DIR", start->place->directory, 1);
 	snprintf(out->log, sizeof out->log, "%s/said-%d", start->place->directory, number++);
+	snprintf(count, sizeof count, "%d", start->handed_count);
+	setenv("LISTEN_PID", "0", 1);
+	setenv("LISTEN_FDS", count, 1);
 	out->pid = fork();
 	assert_true(out->pid >= 0);
 	if (out->pid == 0)

@@ -39,6 +39,8 @@ struct gazed_start {
 	bool without_streams;         /**< with standard input, output and error closed */
 	uid_t user;                   /**< user and group; 0: those of the test */
 	gid_t group;                  /**< a further group, with user */
+	const int *handed;            /**< sockets that a service manager hands over */
+	int handed_count;
 };
 
 /**

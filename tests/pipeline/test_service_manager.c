@@ -2,6 +2,7 @@
 #include "suite.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <pwd.h>
 #include <signal.h>
@@ -16,6 +17,8 @@
 
 #include "base/clock.h"
 #include "gazed_process.h"
+#include "protocol/board/board.h"
+#include "protocol/board/board_door.h"
 
 /* The period of a watchdog that wants a sign of life every 0.1 s. */
 static const char watchdog_usec[] = "200000";
@@ -249,6 +252,111 @@ static void user_that_cannot_be_is_refused(void **state)
 	}
 }
 
+/* Sockets that the test binds as the manager does, beyond the descriptors that it hands them over
+ * as. */
+enum { HANDED = 5, HANDED_FROM = 64 };
+
+/* Bind the daemon's sockets and listen there, as gazed.socket tells systemd to. */
+static void bind_as_manager(int sockets[HANDED])
+{
+	static const struct {
+		const char *name;
+		int type;
+	} bound[HANDED] = { { "control", SOCK_STREAM },
+			    { "latest", SOCK_STREAM },
+			    { "stream", SOCK_STREAM },
+			    { "inlet", SOCK_STREAM },
+			    { "board", SOCK_SEQPACKET } };
+	for (int i = 0; i < HANDED; i++) {
+		struct sockaddr_un address = { .sun_family = AF_UNIX };
+		snprintf(address.sun_path, sizeof address.sun_path, "%s/%s", place.directory,
+			 bound[i].name);
+		int fd = socket(AF_UNIX, bound[i].type | SOCK_CLOEXEC, 0);
+		assert_int_equal(bind(fd, (struct sockaddr *)&address, sizeof address), 0);
+		assert_int_equal(listen(fd, 128), 0);
+		sockets[i] = fcntl(fd, F_DUPFD_CLOEXEC, HANDED_FROM);
+		close(fd);
+	}
+}
+
+static void close_handed(const int sockets[HANDED])
+{
+	for (int i = 0; i < HANDED; i++)
+		close(sockets[i]);
+}
+
+static void client_that_comes_first_is_served_by_the_daemon_that_it_starts(void **state)
+{
+	(void)state;
+	static const char *const arguments[] = { "--sim.rate_hz", "120", NULL };
+	int sockets[HANDED];
+	bind_as_manager(sockets);
+	/* Twice: the sockets outlive a daemon. */
+	for (int i = 0; i < 2; i++) {
+		struct reader reader;
+		struct gazed_process gazed;
+		reader_open(&reader, &place, "gaze");
+		gazed_spawn(&(struct gazed_start) { .place = &place,
+						    .arguments = arguments,
+						    .handed = sockets,
+						    .handed_count = HANDED },
+			    &gazed);
+		reader_receive_gaze(&reader, 10);
+		assert_non_null(gazed_request(&place, "v", NULL));
+		struct gz_board_reader *board = NULL;
+		char path[128];
+		int connection, fd;
+		snprintf(path, sizeof path, "%s/%s", place.directory, GZ_BOARD_DOOR_NAME);
+		assert_int_equal(gz_board_door_ask(path, &connection), GZ_OK);
+		struct pollfd answer = { .fd = connection, .events = POLLIN };
+		assert_int_equal(poll(&answer, 1, PATIENCE_MS), 1);
+		assert_int_equal(gz_board_door_take(connection, &fd), GZ_OK);
+		assert_int_equal(gz_board_open(fd, &board), GZ_OK);
+		gz_board_close(&board);
+		close(fd);
+		close(connection);
+		assert_null(strstr(gazed_said(&gazed), "service manager"));
+		reader_close(&reader);
+		assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+		assert_int_equal(access(path, F_OK), 0);
+	}
+	close_handed(sockets);
+}
+
+static void sockets_of_a_manager_are_not_taken_from_it(void **state)
+{
+	(void)state;
+	int sockets[HANDED];
+	bind_as_manager(sockets);
+	struct gazed_process gazed = SPAWN("--sim.rate_hz", "120");
+	assert_int_equal(gazed_wait_exit(&gazed), 1);
+	assert_non_null(strstr(gazed_said(&gazed), "gazed.socket"));
+	close_handed(sockets);
+	/* Nobody listens any more: the files are in nobody's way. */
+	gazed = SPAWN("--sim.rate_hz", "120");
+	gazed_wait_ready(&place, &gazed);
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+}
+
+static void descriptors_that_are_no_sockets_of_the_daemon_are_closed(void **state)
+{
+	(void)state;
+	static const char *const arguments[] = { "--sim.rate_hz", "120", NULL };
+	int file = open("/dev/null", O_RDONLY | O_CLOEXEC);
+	int handed[] = { fcntl(file, F_DUPFD_CLOEXEC, HANDED_FROM) };
+	close(file);
+	struct gazed_process gazed;
+	gazed_spawn(&(struct gazed_start) { .place = &place,
+					    .arguments = arguments,
+					    .handed = handed,
+					    .handed_count = 1 },
+		    &gazed);
+	gazed_wait_ready(&place, &gazed);
+	assert_non_null(strstr(gazed_said(&gazed), "descriptor 3 of the service manager"));
+	assert_int_equal(gazed_stop(&gazed, SIGTERM), 0);
+	close(handed[0]);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up, tear_down)
 
 TEST_SUITE(service_manager)
@@ -261,6 +369,9 @@ TEST_SUITE(service_manager)
 		TEST(signs_of_life_end_when_the_serving_thread_hangs),
 		TEST(started_by_root_it_becomes_the_user_that_is_named),
 		TEST(user_that_cannot_be_is_refused),
+		TEST(client_that_comes_first_is_served_by_the_daemon_that_it_starts),
+		TEST(sockets_of_a_manager_are_not_taken_from_it),
+		TEST(descriptors_that_are_no_sockets_of_the_daemon_are_closed),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
