@@ -49,12 +49,17 @@ static enum gz_result find_named_file(const struct scene_loader *loader, const c
 /* The path of the volume's file. */
 static enum gz_result find_volume(const struct scene_loader *loader, char out_path[GZ_PATH_SIZE])
 {
-	const struct gz_scene_object *object = gz_scene_volume_object(loader->settings);
-	return object ? find_named_file(loader, object->section,
-					object->volume[0] ? object->volume : object->particles,
-					out_path)
-		      : find_named_file(loader, "volume.file", loader->settings->volume_file,
-					out_path);
+	const struct gz_scene_settings *settings = loader->settings;
+	const struct gz_scene_object *object = gz_scene_volume_object(settings);
+	enum gz_result result =
+		object ? find_named_file(loader, object->section,
+					 object->volume[0] ? object->volume : object->particles,
+					 out_path)
+		       : find_named_file(loader, "volume.file", settings->volume_file, out_path);
+	if (result == GZ_ERR_NOT_FOUND && settings->volume_source[0])
+		gz_err(loader->log, "%s: its data are to be had here: %s", loader->name,
+		       settings->volume_source);
+	return result;
 }
 
 static enum gz_result make_procedural(const struct scene_loader *loader,

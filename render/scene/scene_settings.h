@@ -29,13 +29,18 @@
 /** Size of a DICOM UID with its NUL (PS3.5, 9.1), bytes. */
 #define GZ_SERIES_SIZE 65
 
+/** Size of the sentence that says where a file is to be had, with its NUL, bytes. Chosen: no line
+ * of a scene is longer. */
+#define GZ_SCENE_SOURCE_SIZE 200
+
 /** All settings of a scene. */
 struct gz_scene_settings {
 	char volume_file[GZ_PATH_SIZE]; /**< empty for a procedural volume, or if an object has it
 					 */
-	char volume_series[GZ_SERIES_SIZE]; /**< UID of a DICOM series; empty: the only one */
-	int volume_procedural;              /**< enum gz_procedural + 1; 0 = none */
-	int dims[3];                        /**< raw files and procedural volumes; 0 = not given */
+	char volume_source[GZ_SCENE_SOURCE_SIZE]; /**< where the file is to be had */
+	char volume_series[GZ_SERIES_SIZE];       /**< UID of a DICOM series; empty: the only one */
+	int volume_procedural;                    /**< enum gz_procedural + 1; 0 = none */
+	int dims[3];       /**< raw files and procedural volumes; 0 = not given */
 	int type;          /**< enum gz_raw_type; raw files and procedural volumes */
 	int endian;        /**< raw files: 0 little, 1 big */
 	double spacing[3]; /**< mm; raw files and procedural volumes */

@@ -365,6 +365,20 @@ static void procedural_volume_without_dims_has_128_a_side(void **state)
 	gz_scene_free(&scene);
 }
 
+static void scene_without_its_data_says_where_they_are_to_be_had(void **state)
+{
+	(void)state;
+	static const char text[] =
+		"[volume]\nfile = absent.nrrd\nsource = https://data.example/v.nrrd\n";
+	struct gz_scene scene;
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	const char *path = files_write_text("sourced.scene", text, NULL, 0);
+	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
+	assert_int_equal(log.messages, 2);
+	assert_non_null(strstr(log.last, "to be had here: https://data.example/v.nrrd"));
+}
+
 static void file_is_searched_beside_the_scene_then_under_the_data_folder(void **state)
 {
 	(void)state;
@@ -456,6 +470,7 @@ TEST_SUITE(scene)
 		cmocka_unit_test(every_key_is_documented),
 		cmocka_unit_test(scene_is_loaded_with_what_it_names),
 		cmocka_unit_test(procedural_volume_without_dims_has_128_a_side),
+		cmocka_unit_test(scene_without_its_data_says_where_they_are_to_be_had),
 		cmocka_unit_test(file_is_searched_beside_the_scene_then_under_the_data_folder),
 		cmocka_unit_test(missing_files_are_named_with_a_remedy),
 		cmocka_unit_test(broken_parts_break_the_scene_with_one_line),
