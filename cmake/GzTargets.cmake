@@ -88,6 +88,35 @@ function(gz_program name)
 	endif()
 endfunction()
 
+# gz_shared_library(NAME SOURCES file... EXPORTS map COMPONENT name [USES target...]): libNAME.so, which exports the
+# documented functions only: those of the version script EXPORTS. Each is marked as undefined, because a static
+# library gives the linker only what is asked for. The link for developers belongs to another component.
+function(gz_shared_library name)
+	cmake_parse_arguments(L "" "EXPORTS;COMPONENT" "SOURCES;USES" ${ARGN})
+	set(exports "${CMAKE_CURRENT_SOURCE_DIR}/${L_EXPORTS}")
+	file(STRINGS "${exports}" exported_lines REGEX "^[ \t]*gz_[a-z0-9_]+;")
+	set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${exports}")
+	list(TRANSFORM exported_lines REPLACE "^[ \t]*(gz_[a-z0-9_]+);.*" "LINKER:--undefined=\\1")
+	add_library(${name} SHARED ${L_SOURCES})
+	target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+	target_link_libraries(${name} PRIVATE ${L_USES} gz_settings)
+	target_link_options(${name} PRIVATE ${exported_lines} "LINKER:--version-script=${exports}" LINKER:--as-needed)
+	set_target_properties(${name} PROPERTIES VERSION ${PROJECT_VERSION}
+		SOVERSION ${PROJECT_VERSION_MAJOR} LINK_DEPENDS "${exports}")
+	install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+		COMPONENT ${L_COMPONENT} NAMELINK_COMPONENT development)
+endfunction()
+
+# gz_pkg_config(FILE): install what FILE, ending in .pc.in, becomes. The prefix is written relative to the file,
+# because "cmake --install --prefix" may change it.
+function(gz_pkg_config file)
+	string(REGEX REPLACE "\\.in$" "" made "${file}")
+	file(RELATIVE_PATH GAZECAST_PC_PREFIX "/x/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/x")
+	configure_file("${file}" "${made}" @ONLY)
+	install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${made}"
+		DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+endfunction()
+
 # gz_probe(NAME SOURCES file... [USES target...]): a program that measures, not installed.
 function(gz_probe name)
 	cmake_parse_arguments(P "" "" "SOURCES;USES" ${ARGN})
@@ -184,4 +213,16 @@ function(gz_cast_flags file set)
 		list(APPEND flags --param=asan-use-after-return=0 --param=asan-stack=0 -O1)
 	endif()
 	set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}")
+endfunction()
+
+# gz_system_directory(NAME PACKAGE VARIABLE FOLDER TEXT): the setting NAME, a folder of the system. Under /usr it
+# is what pkg-config knows as VARIABLE of PACKAGE, because distributions differ; otherwise FOLDER.
+function(gz_system_directory name package variable folder text)
+	if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+		pkg_get_variable(known ${package} ${variable})
+		if(known)
+			set(folder "${known}")
+		endif()
+	endif()
+	set(${name} "${folder}" CACHE STRING "${text}")
 endfunction()

@@ -41,7 +41,21 @@ make_root() {
 		>"$new_root/etc/apt/apt.conf.d/99host" || true
 	cp -L /etc/resolv.conf "$new_root/etc/resolv.conf"
 	printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(uname -n)" >"$new_root/etc/hosts"
-	git clone -q --no-hardlinks "$root" "$new_root/root/gazecast"
+}
+
+# A root with a clone of the committed state.
+make_clone_root() {
+	make_root && git clone -q --no-hardlinks "$root" "$new_root/root/gazecast"
+}
+
+# make_base_once: the base system, kept for the next time.
+make_base_once() {
+	[ "$(id -u)" -eq 0 ] || die "this needs root, for chroot and mounts: sudo scripts/check $1"
+	install_packages fresh
+	mkdir -p "$fresh"
+	find_sites
+	[ -s "$fresh/base.tar" ] || run_step fresh-base make_base ||
+		die "debootstrap failed; see $logs/fresh-base.log"
 }
 
 # in_root COMMAND: run COMMAND by bash in the clone. Its mounts are in a namespace of their own: they and
@@ -100,13 +114,8 @@ tell_missing() {
 }
 
 check_fresh() {
-	[ "$(id -u)" -eq 0 ] || die "fresh needs root, for chroot and mounts: sudo scripts/check fresh"
-	install_packages fresh
-	mkdir -p "$fresh"
-	find_sites
-	[ -s "$fresh/base.tar" ] || run_step fresh-base make_base ||
-		die "debootstrap failed; see $logs/fresh-base.log"
-	run_step fresh-root make_root || die "the new root cannot be made; see $logs/fresh-root.log"
+	make_base_once fresh
+	run_step fresh-root make_clone_root || die "the new root cannot be made; see $logs/fresh-root.log"
 	count_one run_step fresh-demo in_root "scripts/demo --headless" || true
 	count_one run_step fresh-check in_root scripts/check || true
 	grep -hE '(packages: installing|stages:|[0-9]+ passed)' "$logs/fresh-demo.log" \

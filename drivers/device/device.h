@@ -107,7 +107,7 @@ struct gz_device_entry {
 
 /** What to do if a device node may not be opened; ends a sentence. */
 #define GZ_DEVICE_PERMISSION_REMEDY \
-	"install the udev rule 70-gazecast.rules, then plug the tracker in again"
+	"install the udev rule 71-gazecast.rules, then plug the tracker in again"
 
 /** One kind of tracker. */
 struct gz_driver {

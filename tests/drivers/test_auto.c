@@ -63,7 +63,7 @@ static void auto_opens_the_usable_tracker(void **state)
 	assert_int_equal(create(NULL, &device), GZ_OK);
 	assert_non_null(device);
 	assert_logged("driver gazepoint");
-	assert_logged("70-gazecast.rules");
+	assert_logged("71-gazecast.rules");
 	gz_device_destroy(&device);
 	gazepoint_server_stop(&server);
 }
@@ -91,7 +91,7 @@ static void auto_names_the_udev_rule_if_a_tracker_may_not_be_opened(void **state
 	assert_int_equal(create(NULL, &device), GZ_ERR_ACCESS);
 	assert_null(device);
 	assert_logged("PlayStation VR2 at usb 250-3.1: no permission");
-	assert_logged("70-gazecast.rules");
+	assert_logged("71-gazecast.rules");
 	/* Another tracker is wanted. */
 	assert_int_equal(create("tracker seven", &device), GZ_ERR_NO_DEVICE);
 }

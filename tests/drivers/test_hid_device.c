@@ -487,7 +487,7 @@ static void hid_devices_are_listed_with_the_reason_if_not_usable(void **state)
 	assert_string_equal(entries[3].serial, "9");
 	assert_string_equal(entries[3].place, "/played/3");
 	assert_false(entries[3].usable);
-	assert_non_null(strstr(entries[3].reason, "70-gazecast.rules"));
+	assert_non_null(strstr(entries[3].reason, "71-gazecast.rules"));
 }
 
 static void hid_device_is_chosen_by_name_serial_or_place(void **state)
@@ -514,7 +514,7 @@ static void hid_device_is_chosen_by_name_serial_or_place(void **state)
 		gz_device_destroy(&device);
 	}
 	assert_int_equal(create_chosen("Locked", NULL, &device), GZ_ERR_ACCESS);
-	expect_told("70-gazecast.rules");
+	expect_told("71-gazecast.rules");
 	assert_int_equal(create_chosen("44", NULL, &device), GZ_ERR_NO_DEVICE);
 	expect_told("44");
 	assert_null(device);

@@ -325,7 +325,7 @@ static void psvr2_that_cannot_be_opened_is_refused_with_the_remedy(void **state)
 	struct fake_usb_device *headset = fake_usb_plug(GZ_PSVR2_VENDOR, GZ_PSVR2_PRODUCT);
 	headset->open_error = LIBUSB_ERROR_ACCESS;
 	assert_int_equal(create(NULL, &device), GZ_ERR_ACCESS);
-	stage_expect_logged(&stage, "70-gazecast.rules");
+	stage_expect_logged(&stage, "71-gazecast.rules");
 	headset->open_error = 0;
 	headset->claim_error = LIBUSB_ERROR_BUSY;
 	assert_int_equal(create(NULL, &device), GZ_ERR_BUSY);
@@ -400,7 +400,7 @@ static void psvr2_list_shows_headsets_and_why_they_cannot_be_used(void **state)
 	/* This device node does not exist. */
 	assert_false(entries[0].usable);
 	assert_non_null(strstr(entries[0].reason, "/dev/bus/usb/250/002"));
-	assert_non_null(strstr(entries[0].reason, "70-gazecast.rules"));
+	assert_non_null(strstr(entries[0].reason, "71-gazecast.rules"));
 	assert_int_equal(fake_usb.contexts + fake_usb.handles, 0);
 }
 

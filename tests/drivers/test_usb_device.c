@@ -44,7 +44,7 @@ static void device_whose_node_may_not_be_opened_names_the_rule(void **state)
 	gz_usb_list_entry(&locked, 5, &entry);
 	assert_false(entry.usable);
 	assert_non_null(strstr(entry.reason, "/nonexistent/250/001"));
-	assert_non_null(strstr(entry.reason, "70-gazecast.rules"));
+	assert_non_null(strstr(entry.reason, "71-gazecast.rules"));
 	assert_true(strlen(entry.reason) < sizeof entry.reason - 1); /* it is not cut */
 }
 

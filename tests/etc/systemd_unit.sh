@@ -1,8 +1,8 @@
 #!/bin/sh
-# usage: systemd_unit.sh UNIT PROGRAM SYSUSERS
-# systemd understands the unit without a warning, finds its sandbox tight, and makes its user.
+# usage: systemd_unit.sh UNIT PROGRAM SYSUSERS USER-UNIT USER-SOCKET
+# systemd understands the units without a warning, finds the sandbox of the system's tight, and makes its user.
 set -eu
-unit=$1 program=$2 sysusers=$3
+unit=$1 program=$2 sysusers=$3 user_unit=$4 user_socket=$5
 command -v systemd-analyze >/dev/null || { echo "no systemd-analyze"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -10,6 +10,11 @@ trap 'rm -rf "$folder"' EXIT
 sed "s#^ExecStart=.*#ExecStart=$program#" "$unit" >"$folder/gazed.service"
 grep -q "^ExecStart=/.*/gazed\$" "$unit" || { echo "$unit starts no gazed"; exit 1; }
 said=$(systemd-analyze verify --man=no "$folder/gazed.service" 2>&1) || { echo "$said"; exit 1; }
+[ -z "$said" ] || { echo "$said"; exit 1; }
+mkdir "$folder/user"
+sed "s#^ExecStart=.*#ExecStart=$program#" "$user_unit" >"$folder/user/gazed.service"
+cp "$user_socket" "$folder/user/gazed.socket"
+said=$(XDG_RUNTIME_DIR=$folder systemd-analyze --user verify --man=no "$folder/user/gazed.socket" 2>&1) || { echo "$said"; exit 1; }
 [ -z "$said" ] || { echo "$said"; exit 1; }
 # Exposure in tenths: 2.0 of 10. What is left is the network, USB and the group's sockets.
 systemd-analyze security --offline=true --threshold=20 --no-pager "$folder/gazed.service" \

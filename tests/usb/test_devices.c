@@ -97,8 +97,8 @@ static void ordinary_user_is_told_about_the_udev_rule_and_can_use_the_tracker_wi
 	lab_start(true, arguments);
 	lab_wait_state(GZ_TRACKER_ABSENT);
 	print_message("           without the rule: %s\n", lab.reader.status.tracker.reason);
-	lab_expect_said("70-gazecast.rules");
-	expect_listed("GazeLab 200", "70-gazecast.rules", true);
+	lab_expect_said("71-gazecast.rules");
+	expect_listed("GazeLab 200", "71-gazecast.rules", true);
 	gadget_unplug(&lab.tracker.gadget);
 	guest_wait_for_file("/dev/hidraw0", false);
 	guest_install_udev_rules();
@@ -116,8 +116,8 @@ static void ordinary_user_uses_a_headset_with_the_udev_rule(void **state)
 	lab_start(true, arguments);
 	lab_wait_state(GZ_TRACKER_ABSENT);
 	print_message("           without the rule: %s\n", lab.reader.status.tracker.reason);
-	expect_listed("PlayStation VR2", "70-gazecast.rules", true);
-	lab_expect_said("70-gazecast.rules");
+	expect_listed("PlayStation VR2", "71-gazecast.rules", true);
+	lab_expect_said("71-gazecast.rules");
 	psvr2_gadget_unplug(&lab.headset);
 	guest_install_udev_rules();
 	lab_plug_headset();

@@ -11,8 +11,10 @@ trap '[ -z "$publisher_id" ] || kill "$publisher_id"; rm -rf "$place"' EXIT
 fail() { echo "$*" >&2; exit 1; }
 
 # Once under a prefix that differs from the configured one, once staged like a package.
-cmake --install "$build" --component library --prefix "$place/prefix" >/dev/null
-DESTDIR=$place/stage cmake --install "$build" --component library --prefix /usr >/dev/null
+for component in library development; do
+	cmake --install "$build" --component $component --prefix "$place/prefix" >/dev/null
+	DESTDIR=$place/stage cmake --install "$build" --component $component --prefix /usr >/dev/null
+done
 [ -n "$(find "$place/stage/usr" -name 'libgazecast.so.0')" ] || fail "DESTDIR: no libgazecast.so.0"
 
 PKG_CONFIG_PATH=$(dirname "$(find "$place/prefix" -name gazecast.pc)")
