@@ -1,9 +1,13 @@
 /* Filters of planes of values and of object ids. INFINITY marks a point without a value. If a
  * filter reads such a point, it takes the mean of the nearer points instead, and failing that the
  * nearest point. Object ids never mix. */
+#include <float.h>
 #include <math.h>
 
 #include "render/reconstruct/cpu/reconstruct.h"
+
+/* Points of a row that are doubled at once. Chosen: they stay in the first-level cache. */
+enum { CUBIC_BLOCK = 64 };
 
 static float value_mean_of_2(float a, float b)
 {
@@ -17,13 +21,21 @@ static float value_mean_of_4(float a, float b, float c, float d)
 	return isfinite(mean) ? mean : a;
 }
 
-/* Catmull-Rom, clamped to [b, c]. */
+/* Whether a number is finite; a comparison becomes SIMD. */
+static bool value_is_finite(float value)
+{
+	return fabsf(value) <= FLT_MAX;
+}
+
+/* Catmull-Rom, clamped to [b, c]. All choices are made, none is nested: that becomes SIMD. */
 static float value_cubic(float a, float b, float c, float d)
 {
-	const float value = (9 * (b + c) - (a + d)) / 16;
-	if (!isfinite(value))
-		return value_mean_of_2(b, c);
-	return fminf(fmaxf(value, fminf(b, c)), fmaxf(b, c));
+	const float value = (9 * (b + c) - (a + d)) / 16, mean = 0.5F * (b + c);
+	const float least = b < c ? b : c, greatest = b < c ? c : b;
+	const float above = value > least ? value : least;
+	const float within = above < greatest ? above : greatest;
+	const float nearer = value_is_finite(mean) ? mean : b;
+	return value_is_finite(value) ? within : nearer;
 }
 
 static float value_mix(float a, float b, float share)

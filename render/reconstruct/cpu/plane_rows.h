@@ -25,35 +25,42 @@ static void PLANE(store)(uint32_t *point, POINT value)
 	memcpy(point, &value, sizeof value);
 }
 
-/* Point @p i of the row halfway between @p row and the next. */
-static POINT PLANE(cubic_below)(const uint32_t *row, ptrdiff_t stride, ptrdiff_t i)
+/* Some points of the four rows around a row that is made, and what is between them. The loops over
+ * whole blocks become SIMD. */
+struct PLANE(cubic_block) {
+	POINT rows[4][CUBIC_BLOCK + 3]; /* from one point before the first */
+	POINT below[CUBIC_BLOCK + 3];   /* the row halfway between rows 1 and 2 */
+	POINT even[2 * CUBIC_BLOCK], odd[2 * CUBIC_BLOCK];
+};
+
+static void PLANE(double_block)(const uint32_t *row, ptrdiff_t stride, int points,
+				struct PLANE(cubic_block) * block)
 {
-	row += i;
-	return PLANE(cubic)(PLANE(load)(row - stride), PLANE(load)(row), PLANE(load)(row + stride),
-			    PLANE(load)(row + 2 * stride));
+	for (int k = 0; k < 4; k++)
+		memcpy(&block->rows[k][0], row + (k - 1) * stride - 1,
+		       (size_t)(points + 3) * sizeof(POINT));
+	for (int i = 0; i < points + 3; i++)
+		block->below[i] = PLANE(cubic)(block->rows[0][i], block->rows[1][i],
+					       block->rows[2][i], block->rows[3][i]);
+	for (int i = 0; i < points; i++) {
+		const POINT *here = block->rows[1] + i, *below = block->below + i;
+		block->even[2 * i] = here[1];
+		block->even[2 * i + 1] = PLANE(cubic)(here[0], here[1], here[2], here[3]);
+		block->odd[2 * i] = below[1];
+		block->odd[2 * i + 1] = PLANE(cubic)(below[0], below[1], below[2], below[3]);
+	}
 }
 
 static void PLANE(double_cubic)(const uint32_t *row, ptrdiff_t stride, uint32_t *even,
 				uint32_t *odd, int count, bool stream)
 {
 	(void)stream;
-	POINT below[4]; /* points i - 1 to i + 2 of the row between */
-	for (int i = 0; i < 3; i++)
-		below[i] = PLANE(cubic_below)(row, stride, i - 1);
-	for (int i = 0; 2 * i < count; i++) {
-		const uint32_t *here = row + i;
-		below[3] = PLANE(cubic_below)(row, stride, i + 2);
-		PLANE(store)(even + 2 * i, PLANE(load)(here));
-		PLANE(store)(odd + 2 * i, below[1]);
-		if (2 * i + 1 < count) {
-			PLANE(store)
-			(even + 2 * i + 1,
-			 PLANE(cubic)(PLANE(load)(here - 1), PLANE(load)(here),
-				      PLANE(load)(here + 1), PLANE(load)(here + 2)));
-			PLANE(store)
-			(odd + 2 * i + 1, PLANE(cubic)(below[0], below[1], below[2], below[3]));
-		}
-		memmove(below, below + 1, 3 * sizeof below[0]);
+	struct PLANE(cubic_block) block;
+	for (int first = 0; first < count; first += 2 * CUBIC_BLOCK) {
+		const int made = gz_least(count - first, 2 * CUBIC_BLOCK);
+		PLANE(double_block)(row + first / 2, stride, (made + 1) / 2, &block);
+		memcpy(even + first, block.even, (size_t)made * sizeof(POINT));
+		memcpy(odd + first, block.odd, (size_t)made * sizeof(POINT));
 	}
 }
 
