@@ -11,6 +11,7 @@ struct shading_lanes {
 	float normals[GZ_SHADING_LEVELS][3][RAYS];
 	float viewer[3][RAYS];
 	float greatest[RAYS], least[RAYS]; /* curvatures, as shares of the mesh's scale */
+	float side[RAYS];                  /* -1 where the surface is seen from behind, else 1 */
 };
 
 /* A packet on its way. */
@@ -69,44 +70,25 @@ static void aim_packet(const struct gz_illustrate_cast *cast, const struct gz_il
 
 /* Where a ray has met a triangle: its corners and their shares. */
 struct triangle_place {
-	const struct gz_shading_vertices *vertices;
-	const uint32_t *corners;
+	const struct gz_illustrate_vertex *corners[3];
 	float shares[3];
 };
 
 static struct triangle_place place_of_hit(const struct gz_illustrate_mesh *mesh,
 					  const struct RTCHit16 *hit, int i)
 {
-	return (struct triangle_place) {
-		.vertices = mesh->vertices,
-		.corners = mesh->triangles[hit->primID[i]],
+	const uint32_t *corners = mesh->triangles[hit->primID[i]];
+	struct triangle_place place = {
 		.shares = { 1 - hit->u[i] - hit->v[i], hit->u[i], hit->v[i] },
 	};
+	for (int corner = 0; corner < 3; corner++)
+		place.corners[corner] = &mesh->vertices[corners[corner]];
+	return place;
 }
 
-static float value_at(const struct triangle_place *place, const float *values)
+static float mean_of(const float shares[3], float a, float b, float c)
 {
-	return place->shares[0] * values[place->corners[0]] +
-	       place->shares[1] * values[place->corners[1]] +
-	       place->shares[2] * values[place->corners[2]];
-}
-
-/* The normal of a level. Opposite normals of the corners can leave nothing: the first one's then.
- */
-static void normal_at(const struct triangle_place *place, int level, float out_normal[3])
-{
-	const float(*normals)[3] = gz_shading_vertices_level(place->vertices, level);
-	float length2 = 0;
-	for (int axis = 0; axis < 3; axis++) {
-		out_normal[axis] = place->shares[0] * normals[place->corners[0]][axis] +
-				   place->shares[1] * normals[place->corners[1]][axis] +
-				   place->shares[2] * normals[place->corners[2]][axis];
-		length2 += out_normal[axis] * out_normal[axis];
-	}
-	const bool lost = !(length2 > 1e-12F);
-	for (int axis = 0; axis < 3; axis++)
-		out_normal[axis] =
-			lost ? normals[place->corners[0]][axis] : out_normal[axis] / sqrtf(length2);
+	return shares[0] * a + shares[1] * b + shares[2] * c;
 }
 
 /* -1 where the surface is seen from behind, otherwise 1. The triangle's plane decides, because
@@ -129,33 +111,94 @@ static void fill_empty_lane(int i, struct shading_lanes *lanes)
 		lanes->viewer[axis][i] = axis == 2;
 	}
 	lanes->greatest[i] = lanes->least[i] = 0;
+	lanes->side[i] = 1;
+}
+
+/* Means of the corners' normals, of any length. Opposite normals can leave nothing: the first one's
+ * then. */
+static void interpolate_normals(const struct triangle_place *place,
+				float normals[GZ_SHADING_LEVELS][3])
+{
+	const struct gz_illustrate_vertex *a = place->corners[0], *b = place->corners[1];
+	const struct gz_illustrate_vertex *c = place->corners[2];
+	float *all = &normals[0][0];
+	for (int k = 0; k < 3 * GZ_SHADING_LEVELS; k++)
+		all[k] = mean_of(place->shares, (&a->normals[0][0])[k], (&b->normals[0][0])[k],
+				 (&c->normals[0][0])[k]);
+	for (int level = 0; level < GZ_SHADING_LEVELS; level++) {
+		const float *normal = normals[level];
+		const float square =
+			normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
+		const float steps = GZ_ILLUSTRATE_NORMAL_STEPS;
+		for (int axis = 0; axis < 3 && !(square > 1e-8F * steps * steps); axis++)
+			normals[level][axis] = a->normals[level][axis];
+	}
 }
 
 static void fill_lane(const struct triangle_place *place, const struct RTCRayHit16 *hit, int i,
 		      struct shading_lanes *lanes)
 {
-	float side = 1;
-	for (int level = 0; level < GZ_SHADING_LEVELS; level++) {
-		float normal[3];
-		normal_at(place, level, normal);
-		if (level == 0)
-			side = side_of_hit(&hit->hit, &hit->ray, i, normal);
+	const struct gz_illustrate_vertex *const *corners = place->corners;
+	float normals[GZ_SHADING_LEVELS][3];
+	interpolate_normals(place, normals);
+	for (int level = 0; level < GZ_SHADING_LEVELS; level++)
 		for (int axis = 0; axis < 3; axis++)
-			lanes->normals[level][axis][i] = side * normal[axis];
-	}
-	const float greatest = value_at(place, place->vertices->greatest);
-	const float least = value_at(place, place->vertices->least);
-	const float scale = side / place->vertices->curvature_scale;
-	lanes->greatest[i] = scale * (side > 0 ? greatest : least);
-	lanes->least[i] = scale * (side > 0 ? least : greatest);
+			lanes->normals[level][axis][i] = normals[level][axis];
+	const float side = side_of_hit(&hit->hit, &hit->ray, i, normals[0]);
+	const float greatest = mean_of(place->shares, corners[0]->greatest, corners[1]->greatest,
+				       corners[2]->greatest);
+	const float least =
+		mean_of(place->shares, corners[0]->least, corners[1]->least, corners[2]->least);
+	lanes->side[i] = side;
+	lanes->greatest[i] = side * (side > 0 ? greatest : least);
+	lanes->least[i] = side * (side > 0 ? least : greatest);
 	lanes->viewer[0][i] = -hit->ray.dir_x[i];
 	lanes->viewer[1][i] = -hit->ray.dir_y[i];
 	lanes->viewer[2][i] = -hit->ray.dir_z[i];
 }
 
+/* Make the normals of all lanes as long as 1, and turn them towards the viewer. */
+static void settle_normals(struct shading_lanes *lanes)
+{
+	for (int level = 0; level < GZ_SHADING_LEVELS; level++) {
+		float *x = lanes->normals[level][0], *y = lanes->normals[level][1];
+		float *z = lanes->normals[level][2];
+		for (int i = 0; i < RAYS; i++) {
+			const float scale =
+				lanes->side[i] / sqrtf(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+			x[i] *= scale;
+			y[i] *= scale;
+			z[i] *= scale;
+		}
+	}
+}
+
+/* Fetch what shading reads into the caches: for all rays at once, it takes one wait for the
+ * triangles and one for the vertices. Always inlined: gcc 12 takes a function that only fetches for
+ * one without effect, and leaves calls of it out. */
+__attribute__((always_inline)) static inline void fetch_hits(const struct gz_illustrate_cast *cast,
+							     const struct RTCHit16 *hit)
+{
+	for (int i = 0; i < RAYS; i++)
+		if (hit->geomID[i] < cast->mesh_count)
+			__builtin_prefetch(cast->meshes[hit->geomID[i]].triangles[hit->primID[i]]);
+	for (int i = 0; i < RAYS; i++) {
+		if (hit->geomID[i] >= cast->mesh_count)
+			continue;
+		const struct gz_illustrate_mesh *mesh = &cast->meshes[hit->geomID[i]];
+		for (int corner = 0; corner < 3; corner++) {
+			const struct gz_illustrate_vertex *vertex =
+				&mesh->vertices[mesh->triangles[hit->primID[i]][corner]];
+			__builtin_prefetch(vertex);
+			__builtin_prefetch((const char *)(vertex + 1) - 1);
+		}
+	}
+}
+
 static void read_hits(const struct gz_illustrate_cast *cast, const struct RTCRayHit16 *hit,
 		      struct shading_lanes *lanes, struct gz_illustrate_hits *hits)
 {
+	fetch_hits(cast, &hit->hit);
 	for (int i = 0; i < RAYS; i++) {
 		const unsigned number = hit->hit.geomID[i];
 		const bool met = number < cast->mesh_count;
@@ -166,12 +209,16 @@ static void read_hits(const struct gz_illustrate_cast *cast, const struct RTCRay
 			fill_empty_lane(i, lanes);
 			continue;
 		}
-		const struct gz_illustrate_mesh *mesh = &cast->meshes[number];
-		const struct triangle_place place = place_of_hit(mesh, &hit->hit, i);
+		const struct triangle_place place =
+			place_of_hit(&cast->meshes[number], &hit->hit, i);
 		fill_lane(&place, hit, i, lanes);
-		if (mesh->distances_mm)
-			hits->distance_mm[i] = value_at(&place, mesh->distances_mm);
+		const float distance_mm =
+			mean_of(place.shares, place.corners[0]->distance_mm,
+				place.corners[1]->distance_mm, place.corners[2]->distance_mm);
+		if (isfinite(distance_mm))
+			hits->distance_mm[i] = distance_mm;
 	}
+	settle_normals(lanes);
 }
 
 /* Mean of the parameters that have a weight. */
@@ -214,6 +261,22 @@ static void shade_lanes(const struct gz_illustrate_cast *cast, const struct shad
 		out_tone[i] = weights->flat;
 }
 
+static bool any_is_met(const struct RTCRayHit16 *hit)
+{
+	bool any = false;
+	for (int i = 0; i < RAYS; i++)
+		any |= hit->hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+	return any;
+}
+
+static void fill_empty_hits(struct gz_illustrate_hits *hits)
+{
+	for (int i = 0; i < RAYS; i++) {
+		hits->tone[i] = hits->depth_mm[i] = hits->distance_mm[i] = INFINITY;
+		hits->ids[i] = 0;
+	}
+}
+
 void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
 			     const struct gz_illustrate_tile *tile,
 			     struct gz_illustrate_hits *out_hits)
@@ -222,6 +285,10 @@ void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
 	struct shading_lanes lanes;
 	aim_packet(cast, tile, &packet);
 	gz_embree_intersect(packet.valid, cast->tree, &packet.hit);
+	if (!any_is_met(&packet.hit)) {
+		fill_empty_hits(out_hits);
+		return;
+	}
 	read_hits(cast, &packet.hit, &lanes, out_hits);
 	shade_lanes(cast, &lanes, out_hits->tone);
 	for (int i = 0; i < RAYS; i++)

@@ -10,18 +10,26 @@
 #include <stdint.h>
 
 #include "render/illustration/shading_parameters.h"
-#include "render/illustration/shading_vertices.h"
 #include "render/surface/cpu/embree.h"
 
 /** Rays of a tile, which are one packet of Embree. */
 #define GZ_ILLUSTRATE_RAYS 16
 
+/** Steps of a normal's component from 0 to 1. */
+#define GZ_ILLUSTRATE_NORMAL_STEPS 32767
+
+/** What a ray reads of a vertex, side by side, so that a triangle takes few lines of the caches. */
+struct gz_illustrate_vertex {
+	int16_t normals[GZ_SHADING_LEVELS][3]; /**< times GZ_ILLUSTRATE_NORMAL_STEPS */
+	float greatest, least; /**< curvatures, as shares of the mesh's scale; convex is positive */
+	float distance_mm;     /**< to the chosen object; INFINITY: none is chosen */
+};
+
 /** One mesh. All pointers are borrowed. */
 struct gz_illustrate_mesh {
 	const uint32_t (*triangles)[3]; /**< in the order of the tree */
-	const struct gz_shading_vertices *vertices;
-	const float *distances_mm; /**< of vertices to the chosen object; NULL: none is chosen */
-	uint32_t id;               /**< of its object */
+	const struct gz_illustrate_vertex *vertices;
+	uint32_t id; /**< of its object */
 };
 
 /** Weights of the surface parameters, 0 or more. */

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "render/illustration/shading_vertices.h"
 #include "render/mesh/distance/mesh_distance.h"
 #include "render/mesh/mesh_read.h"
 
@@ -11,10 +12,8 @@
 
 static void free_items(struct gz_illustrate_scene *scene, size_t count)
 {
-	for (size_t i = 0; scene->items && i < count; i++) {
-		gz_shading_vertices_free(&scene->items[i].vertices);
-		free(scene->items[i].distances_mm);
-	}
+	for (size_t i = 0; scene->items && i < count; i++)
+		free(scene->items[i].vertices);
 	free(scene->items);
 	free(scene->listed);
 	free(scene->importances);
@@ -95,6 +94,31 @@ static void bound_scene(struct gz_illustrate_scene *scene)
 	scene->radius_mm = fmax(sqrt(square), 1e-6);
 }
 
+static void pack_vertex(const struct gz_shading_vertices *vertices, size_t i,
+			struct gz_illustrate_vertex *packed)
+{
+	for (int level = 0; level < GZ_SHADING_LEVELS; level++)
+		for (int axis = 0; axis < 3; axis++)
+			packed->normals[level][axis] = (int16_t)lrintf(
+				GZ_ILLUSTRATE_NORMAL_STEPS *
+				gz_shading_vertices_level(vertices, level)[i][axis]);
+	packed->greatest = vertices->greatest[i] / vertices->curvature_scale;
+	packed->least = vertices->least[i] / vertices->curvature_scale;
+	packed->distance_mm = INFINITY;
+}
+
+static enum gz_result pack_vertices(const struct gz_shading_vertices *vertices,
+				    struct gz_illustrate_vertex **out_packed)
+{
+	struct gz_illustrate_vertex *packed = malloc((vertices->count + 1) * sizeof *packed);
+	if (!packed)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < vertices->count; i++)
+		pack_vertex(vertices, i, &packed[i]);
+	*out_packed = packed;
+	return GZ_OK;
+}
+
 /* Make the vertices of an object. Objects of one input keep files of their own. */
 static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t index,
 				   struct gz_workers *workers)
@@ -104,11 +128,17 @@ static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t ind
 	snprintf(ending, sizeof ending, "%u.shading",
 		 (unsigned)scene->meshes.items[index].object.id);
 	const struct gz_mesh_cache_place place = { item->input, ending };
-	gz_shading_vertices_free(&item->vertices);
-	free(item->distances_mm);
-	item->distances_mm = NULL;
-	return gz_shading_vertices_make(&scene->meshes.shown[index], item->input ? &place : NULL,
-					workers, scene->log, &item->vertices);
+	struct gz_shading_vertices vertices;
+	free(item->vertices);
+	item->vertices = NULL;
+	enum gz_result result =
+		gz_shading_vertices_make(&scene->meshes.shown[index], item->input ? &place : NULL,
+					 workers, scene->log, &vertices);
+	if (result != GZ_OK)
+		return result;
+	result = pack_vertices(&vertices, &item->vertices);
+	gz_shading_vertices_free(&vertices);
+	return result;
 }
 
 static void list_illustrated(struct gz_illustrate_scene *scene)
@@ -116,8 +146,7 @@ static void list_illustrated(struct gz_illustrate_scene *scene)
 	for (size_t i = 0; i < scene->meshes.count; i++)
 		scene->listed[i] = (struct gz_illustrate_mesh) {
 			.triangles = (const uint32_t(*)[3])scene->meshes.shown[i].triangles,
-			.vertices = &scene->items[i].vertices,
-			.distances_mm = scene->items[i].distances_mm,
+			.vertices = scene->items[i].vertices,
 			.id = scene->meshes.items[i].object.id,
 		};
 }
@@ -126,13 +155,17 @@ static enum gz_result measure_item(struct gz_illustrate_scene *scene, size_t ind
 				   const struct gz_mesh *chosen, struct gz_workers *workers)
 {
 	const struct gz_mesh *mesh = &scene->meshes.shown[index];
-	struct gz_illustrate_item *item = &scene->items[index];
-	free(item->distances_mm);
-	item->distances_mm = calloc(mesh->vertex_count + 1, sizeof *item->distances_mm);
-	if (!item->distances_mm)
+	struct gz_illustrate_vertex *vertices = scene->items[index].vertices;
+	float *distances_mm = calloc(mesh->vertex_count + 1, sizeof *distances_mm);
+	if (!distances_mm)
 		return GZ_ERR_NO_MEM;
-	return gz_mesh_distances(chosen, (const float(*)[3])mesh->positions, mesh->vertex_count,
-				 workers, scene->log, item->distances_mm);
+	const enum gz_result result =
+		gz_mesh_distances(chosen, (const float(*)[3])mesh->positions, mesh->vertex_count,
+				  workers, scene->log, distances_mm);
+	for (size_t i = 0; i < mesh->vertex_count && result == GZ_OK; i++)
+		vertices[i].distance_mm = distances_mm[i];
+	free(distances_mm);
+	return result;
 }
 
 /* Find the distance of all vertices from the chosen object. */

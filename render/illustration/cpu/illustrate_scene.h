@@ -15,9 +15,8 @@
 
 /** One object's vertices. */
 struct gz_illustrate_item {
-	const char *input;                   /**< borrowed; NULL: nothing is kept */
-	struct gz_shading_vertices vertices; /**< of the mesh that is shown */
-	float *distances_mm;                 /**< to the chosen object; NULL: not made */
+	const char *input;                     /**< borrowed; NULL: nothing is kept */
+	struct gz_illustrate_vertex *vertices; /**< of the mesh that is shown; NULL: not made */
 };
 
 /** All of it. Zero-initialised with log set and the tree opened, it shows nothing. */
@@ -29,7 +28,7 @@ struct gz_illustrate_scene {
 	struct gz_illustrate_mesh *listed; /**< as rays read them */
 	float *importances;                /**< of object 1 to importance_count */
 	size_t importance_count;
-	uint32_t measured_id;           /**< object that distances_mm are to; 0: none */
+	uint32_t measured_id;           /**< object that distances are to; 0: none */
 	double centre_mm[3], radius_mm; /**< of a ball around all vertices */
 	unsigned made;                  /**< how often any of it was made */
 	bool current;                   /**< tree, vertices and ball are those of meshes.shown */
