@@ -1,6 +1,7 @@
 #include "render/illustration/depth_blur.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "render/illustration/plane_kernels.h"
 
@@ -16,6 +17,45 @@ void gz_gaussian_make(double deviation_px, struct gz_gaussian *out_gaussian)
 	*out_gaussian = (struct gz_gaussian) { .radius = radius };
 	for (int i = 0; i <= radius; i++)
 		out_gaussian->weights[i] = (float)(weights[i] / sum);
+}
+
+/* Least standard deviation of a Gaussian of cells. Chosen: with 2 the error is twice as large, with
+ * 4 the time. */
+#define DEVIATION_LEAST 2.5
+
+/* The mean of f by f pixels adds a variance of (f² - 1) / 12 px², bilinear enlargement one of
+ * f² / 6: that of a triangle that reaches f pixels to either side. */
+void gz_depth_blur_make(double deviation_px, struct gz_depth_blur *out_blur)
+{
+	int level = 0;
+	while (level < GZ_BLUR_LEVELS_MAX && deviation_px / (2 << level) >= DEVIATION_LEAST)
+		level++;
+	const double factor = 1 << level, cells = deviation_px / factor;
+	const double added = level > 0 ? (1 - 1 / (factor * factor)) / 12 + 1.0 / 6 : 0;
+	out_blur->level = level;
+	gz_gaussian_make(sqrt(cells * cells - added), &out_blur->gaussian);
+}
+
+void gz_depth_share(const void *depth, const uint32_t *ids, int count,
+		    const struct gz_depth_range *range, float *out_shares)
+{
+	gz_plane_kernels_find()->share_depth(depth, ids, count, range, out_shares);
+}
+
+void gz_depth_halve(const float *upper, const float *lower, int width, float *out_cells)
+{
+	gz_plane_kernels_find()->halve_rows(upper, lower, width, out_cells);
+}
+
+void gz_depth_enlarge(const float *cells, int width, int height, int level, int x, int y,
+		      float *out_pixels)
+{
+	const float at = ((float)y + 0.5F) / (float)(1 << level) - 0.5F;
+	const int above = (int)floorf(at), below = above + 1;
+	const int first = above > 0 ? above : 0, last = below < height ? below : height - 1;
+	gz_plane_kernels_find()->enlarge_row(cells + (ptrdiff_t)first * width,
+					     cells + (ptrdiff_t)last * width, at - (float)above,
+					     width, level, x, out_pixels);
 }
 
 void gz_blur_along_rows(const struct gz_gaussian *gaussian, const struct gz_plane_band *band,

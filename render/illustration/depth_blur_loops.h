@@ -98,4 +98,87 @@ static void blur_columns(const struct gz_gaussian *gaussian, const struct gz_pla
 			blur_column_span(gaussian, band, in, out, y, x);
 }
 
+/* gz_depth_share() */
+static void share_depth(const void *depth, const uint32_t *ids, int count,
+			const struct gz_depth_range *range, float *restrict out_shares)
+{
+	const char *bytes = depth;
+	const float near = range->near, scale = 1 / (range->far - range->near);
+	for (int i = 0; i < count; i++) {
+		float value;
+		memcpy(&value, bytes + (size_t)i * sizeof value, sizeof value);
+		const float share = (value - near) * scale;
+		const float low = share < 0 ? 0 : share;
+		const float within = low < 1 ? low : 1; /* NaN becomes 1 */
+		out_shares[i] = ids[i] != 0 ? within : 1;
+	}
+}
+
+/* gz_depth_halve() */
+static void halve_rows(const float *upper, const float *lower, int width, float *restrict out_cells)
+{
+	const int whole = width / 2;
+	for (int i = 0; i < whole; i++)
+		out_cells[i] = 0.25F * ((upper[2 * i] + upper[2 * i + 1]) +
+					(lower[2 * i] + lower[2 * i + 1]));
+	if (width % 2)
+		out_cells[whole] = 0.5F * (upper[width - 1] + lower[width - 1]);
+}
+
+/* Enlarges cells by a factor, linearly; before the first and after the last one there is another.
+ * Inlined with the factor as a constant, it becomes SIMD. */
+static inline void enlarge_by(const float *restrict cells, int factor, float *restrict out_pixels)
+{
+	for (int i = 0; i < GZ_BLUR_COLUMNS / factor; i++) {
+		const float own = cells[i + 1];
+		for (int k = 0; k < factor; k++) {
+			const float at = ((float)k + 0.5F) / (float)factor - 0.5F;
+			const float other = at < 0 ? own - cells[i] : cells[i + 2] - own;
+			out_pixels[i * factor + k] = own + at * other;
+		}
+	}
+}
+
+/* Enlarges cells of a level; before the first and after the last one there is another. */
+static void enlarge_level(const float *cells, int level, float *out_pixels)
+{
+	switch (level) {
+	case 1:
+		enlarge_by(cells, 2, out_pixels);
+		break;
+	case 2:
+		enlarge_by(cells, 4, out_pixels);
+		break;
+	case 3:
+		enlarge_by(cells, 8, out_pixels);
+		break;
+	case 4:
+		enlarge_by(cells, 16, out_pixels);
+		break;
+	case 5:
+		enlarge_by(cells, 32, out_pixels);
+		break;
+	default:
+		memcpy(out_pixels, cells + 1, GZ_BLUR_COLUMNS * sizeof *out_pixels);
+		break;
+	}
+}
+
+/* gz_depth_enlarge(), between two rows of cells. */
+static void enlarge_row(const float *above, const float *below, float share, int width, int level,
+			int x, float *out_pixels)
+{
+	float cells[GZ_BLUR_COLUMNS + 2];
+	const int first = (x >> level) - 1, count = (GZ_BLUR_COLUMNS >> level) + 2;
+	if (first >= 0 && first + count <= width)
+		for (int i = 0; i < count; i++)
+			cells[i] = above[first + i] + share * (below[first + i] - above[first + i]);
+	else
+		for (int i = 0; i < count; i++) {
+			const int cell = clamp_index(first + i, width);
+			cells[i] = above[cell] + share * (below[cell] - above[cell]);
+		}
+	enlarge_level(cells, level, out_pixels);
+}
+
 #endif

@@ -9,8 +9,6 @@
 
 #include <stdint.h>
 
-#include "render/illustration/depth_blur.h"
-
 /** The filters of eq. 4.1, by their number of neighbours. The first two draw lines a pixel wide,
  * the others two. */
 enum gz_line_filter {
@@ -27,28 +25,37 @@ enum gz_line_filter {
 #define GZ_LINE_INNER      0.5F /**< depth bends here: an edge or a fold within an object */
 #define GZ_LINE_SILHOUETTE 1.0F /**< another object, or the background, is farther */
 
-/** What lines are found in. */
-struct gz_line_planes {
-	const uint32_t *ids; /**< 0 is the background */
-	const float *depth;  /**< 0 (near) to 1 (far); 1 at the background */
+/** Pixels that are filtered at once. Chosen: all planes of a tile stay in the caches of a core. */
+enum {
+	GZ_LINE_COLUMNS = 64,
+	GZ_LINE_ROWS = 16,
+	GZ_LINE_REACH = 2, /**< of the widest filter, px to each side */
+};
+
+/** What lines are found in: a tile of a picture and what surrounds it, row 0 on top. Beyond the
+ *  picture its border repeats. */
+struct gz_line_window {
+	/** 0 is the background. The tile's first pixel is at [GZ_LINE_REACH][GZ_LINE_REACH]. */
+	uint32_t ids[GZ_LINE_ROWS + 2 * GZ_LINE_REACH][GZ_LINE_COLUMNS + 2 * GZ_LINE_REACH];
+	/** 0 (near) to 1 (far); 1 at the background */
+	float depth[GZ_LINE_ROWS + 2 * GZ_LINE_REACH][GZ_LINE_COLUMNS + 2 * GZ_LINE_REACH];
 };
 
 /**
- * Find the lines of a band of rows.
+ * Find the lines of a tile.
  *
  * Silhouettes: for each pixel the ids around it are renamed, 1/2 for the pixel's own object, 1 for
  * farther and 0 for nearer ones, and the filter is applied; a positive sum is a silhouette. Of two
  * objects at one depth the one of the lower id counts as nearer. Inner lines: the filter is applied
  * to depth; a mean over the neighbours above @p threshold is a line. The background has no lines.
- * Beyond the picture its border repeats. Does not allocate.
+ * Does not allocate. Threads: any.
  *
+ * @param rows            of the tile, 1 to GZ_LINE_ROWS; the window has 2 * GZ_LINE_REACH more
  * @param threshold       depth by which the neighbours' mean is farther, above 0
- * @param[out] out_lines  the band's rows of a plane of GZ_LINE_NONE, GZ_LINE_INNER and
+ * @param[out] out_lines  @p rows rows of GZ_LINE_COLUMNS: GZ_LINE_NONE, GZ_LINE_INNER and
  *                        GZ_LINE_SILHOUETTE
- *
- * Threads: any, for different bands.
  */
-void gz_feature_lines(const struct gz_line_planes *planes, const struct gz_plane_band *band,
-		      enum gz_line_filter filter, float threshold, float *out_lines);
+void gz_feature_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
+		      float threshold, float *out_lines);
 
 #endif

@@ -11,23 +11,20 @@
 #include "render/illustration/feature_lines.h"
 
 enum {
-	LINE_COLUMNS =
-		64, /* that are filtered at once; chosen: they stay in the first-level cache */
-	REACH = 2,  /* of the widest filter */
+	REACH = GZ_LINE_REACH,
+	WINDOW_COLUMNS = GZ_LINE_COLUMNS + 2 * GZ_LINE_REACH,
 	NEIGHBOURS_MAX = 24,
 };
 
 /* Where the neighbours of a filter are: columns, rows. */
 struct line_stencil {
-	int reach; /* steps to the farthest neighbour, along x and y */
 	int count;
 	signed char offsets[NEIGHBOURS_MAX][2];
 };
 
 static const struct line_stencil line_stencils[GZ_LINE_FILTER_COUNT] = {
-	[GZ_LINES_4] = { 1, 4, { { 0, -1 }, { -1, 0 }, { 1, 0 }, { 0, 1 } } },
-	[GZ_LINES_8] = { 1,
-			 8,
+	[GZ_LINES_4] = { 4, { { 0, -1 }, { -1, 0 }, { 1, 0 }, { 0, 1 } } },
+	[GZ_LINES_8] = { 8,
 			 { { -1, -1 },
 			   { 0, -1 },
 			   { 1, -1 },
@@ -36,8 +33,7 @@ static const struct line_stencil line_stencils[GZ_LINE_FILTER_COUNT] = {
 			   { -1, 1 },
 			   { 0, 1 },
 			   { 1, 1 } } },
-	[GZ_LINES_12] = { 2,
-			  12,
+	[GZ_LINES_12] = { 12,
 			  { { 0, -2 },
 			    { -1, -1 },
 			    { 0, -1 },
@@ -50,133 +46,103 @@ static const struct line_stencil line_stencils[GZ_LINE_FILTER_COUNT] = {
 			    { 0, 1 },
 			    { 1, 1 },
 			    { 0, 2 } } },
-	[GZ_LINES_24] = { 2, 24, { { -2, -2 }, { -1, -2 }, { 0, -2 }, { 1, -2 }, { 2, -2 },
-				   { -2, -1 }, { -1, -1 }, { 0, -1 }, { 1, -1 }, { 2, -1 },
-				   { -2, 0 },  { -1, 0 },  { 1, 0 },  { 2, 0 },  { -2, 1 },
-				   { -1, 1 },  { 0, 1 },   { 1, 1 },  { 2, 1 },  { -2, 2 },
-				   { -1, 2 },  { 0, 2 },   { 1, 2 },  { 2, 2 } } },
+	[GZ_LINES_24] = { 24,
+			  { { -2, -2 }, { -1, -2 }, { 0, -2 }, { 1, -2 }, { 2, -2 }, { -2, -1 },
+			    { -1, -1 }, { 0, -1 },  { 1, -1 }, { 2, -1 }, { -2, 0 }, { -1, 0 },
+			    { 1, 0 },   { 2, 0 },   { -2, 1 }, { -1, 1 }, { 0, 1 },  { 1, 1 },
+			    { 2, 1 },   { -2, 2 },  { -1, 2 }, { 0, 2 },  { 1, 2 },  { 2, 2 } } },
 };
 
-/* Pixels of a row with what surrounds them, so that no index leaves the picture. */
-struct line_window {
-	uint32_t ids[2 * REACH + 1][LINE_COLUMNS + 2 * REACH];
-	float depth[2 * REACH + 1][LINE_COLUMNS + 2 * REACH];
+/* What a window is like. */
+struct window_look {
+	bool one_object; /* all of it, with what surrounds it */
+	bool even;       /* nothing is farther than anything else by a threshold */
 };
 
-/* An index of a plane whose border repeats. */
-static int within(int index, int count)
+/* Looks at the rows of a window and those around them. */
+static struct window_look look_at_window(const struct gz_line_window *window, int rows,
+					 float threshold)
 {
-	if (index < 0)
-		return 0;
-	return index < count ? index : count - 1;
-}
-
-/* Some pixels of a row, and how far around them a filter looks. */
-struct line_place {
-	int x, y, count, reach;
-};
-
-/* Copy what surrounds some pixels: of the window, the rows that the filter reaches. */
-static void take_window(const struct gz_line_planes *planes, const struct gz_plane_band *band,
-			const struct line_place *place, struct line_window *window)
-{
-	const int x = place->x, y = place->y, count = place->count;
-	const bool inside = x >= REACH && x + count + REACH <= band->width;
-	for (int row = REACH - place->reach; row <= REACH + place->reach; row++) {
-		const ptrdiff_t start =
-			(ptrdiff_t)within(y + row - REACH, band->height) * band->width;
-		const uint32_t *ids = planes->ids + start;
-		const float *depth = planes->depth + start;
-		const int wide = count + 2 * REACH;
-		if (inside) {
-			memcpy(window->ids[row], ids + x - REACH, (size_t)wide * sizeof *ids);
-			memcpy(window->depth[row], depth + x - REACH, (size_t)wide * sizeof *depth);
-		}
-		for (int i = 0; !inside && i < wide; i++) {
-			window->ids[row][i] = ids[within(x + i - REACH, band->width)];
-			window->depth[row][i] = depth[within(x + i - REACH, band->width)];
-		}
-	}
-}
-
-/* Whether all pixels of a window are of one object. */
-static bool is_one_object(const struct line_window *window, const struct line_place *place)
-{
-	const uint32_t own = window->ids[REACH][REACH];
+	const uint32_t own = window->ids[0][0];
 	uint32_t others = 0;
-	for (int row = REACH - place->reach; row <= REACH + place->reach; row++)
-		for (int i = 0; i < place->count + 2 * REACH; i++)
+	float nearest[WINDOW_COLUMNS], farthest[WINDOW_COLUMNS]; /* of each column: SIMD */
+	memcpy(nearest, window->depth[0], sizeof nearest);
+	memcpy(farthest, window->depth[0], sizeof farthest);
+	for (int row = 0; row < rows + 2 * REACH; row++)
+		for (int i = 0; i < WINDOW_COLUMNS; i++) {
+			const float depth = window->depth[row][i];
 			others |= window->ids[row][i] ^ own;
-	return others == 0;
+			nearest[i] = depth < nearest[i] ? depth : nearest[i];
+			farthest[i] = depth > farthest[i] ? depth : farthest[i];
+		}
+	for (int i = 1; i < WINDOW_COLUMNS; i++) {
+		nearest[0] = nearest[i] < nearest[0] ? nearest[i] : nearest[0];
+		farthest[0] = farthest[i] > farthest[0] ? farthest[i] : farthest[0];
+	}
+	/* a little less than the threshold: sums are rounded */
+	return (struct window_look) { others == 0, farthest[0] - nearest[0] < 0.999F * threshold };
 }
 
-/* Add what one neighbour of each pixel contributes to the filter of ids. */
-static void add_id_neighbour(const struct line_window *window, const signed char offset[2],
-			     int count, float *restrict sums)
+/* Add what one neighbour of each pixel contributes to the filter of ids, in halves: 1 farther, -1
+ * nearer. Choices that are not nested become SIMD. */
+static void add_id_neighbour(const uint32_t *own, const float *own_depth, ptrdiff_t offset,
+			     int32_t *restrict halves)
 {
-	const uint32_t *own = &window->ids[REACH][REACH];
-	const float *own_depth = &window->depth[REACH][REACH];
-	const uint32_t *ids = &window->ids[REACH + offset[1]][REACH + offset[0]];
-	const float *depth = &window->depth[REACH + offset[1]][REACH + offset[0]];
-	for (int i = 0; i < count; i++) {
-		const float farther = depth[i] > own_depth[i] ? 1 : 0;
-		const float later = ids[i] > own[i] ? 1 : 0;
-		const float renamed = depth[i] == own_depth[i] ? later : farther;
-		sums[i] += (ids[i] == own[i] ? 0.5F : renamed) - 0.5F;
+	const uint32_t *ids = own + offset;
+	const float *depth = own_depth + offset;
+	for (int i = 0; i < GZ_LINE_COLUMNS; i++) {
+		const int32_t farther = depth[i] > own_depth[i] ? 1 : 0;
+		const int32_t alike = depth[i] == own_depth[i] ? 1 : 0;
+		const int32_t later = ids[i] > own[i] ? 1 : 0;
+		const int32_t other = ids[i] != own[i] ? -1 : 0;
+		halves[i] += other & (2 * (farther | (alike & later)) - 1);
 	}
 }
 
 /* Add the depth of one neighbour of each pixel. */
-static void add_depth_neighbour(const struct line_window *window, const signed char offset[2],
-				int count, float *restrict sums)
+static void add_depth_neighbour(const float *depth, float *restrict sums)
 {
-	const float *depth = &window->depth[REACH + offset[1]][REACH + offset[0]];
-	for (int i = 0; i < count; i++)
+	for (int i = 0; i < GZ_LINE_COLUMNS; i++)
 		sums[i] += depth[i];
 }
 
-/* Filter some pixels of a row. */
-static void filter_lines(const struct line_window *window, const struct line_stencil *stencil,
-			 const struct line_place *place, float threshold, float *restrict out_lines)
+/* Filter a row of a window. */
+static void filter_lines(const uint32_t *own, const float *own_depth,
+			 const struct line_stencil *stencil, bool one_object, float threshold,
+			 float *restrict out_lines)
 {
-	const int count = place->count;
-	float id_sums[LINE_COLUMNS] = { 0 }, depth_sums[LINE_COLUMNS] = { 0 };
-	const uint32_t *own = &window->ids[REACH][REACH];
-	const float *own_depth = &window->depth[REACH][REACH];
+	int32_t id_halves[GZ_LINE_COLUMNS] = { 0 };
+	float depth_sums[GZ_LINE_COLUMNS] = { 0 };
 	const float neighbours = (float)stencil->count;
-	const bool one_object = is_one_object(window, place);
-	if (one_object && own[0] == 0) {
-		memset(out_lines, 0, (size_t)count * sizeof *out_lines); /* GZ_LINE_NONE */
-		return;
+	for (int k = 0; k < stencil->count; k++) {
+		const ptrdiff_t offset =
+			stencil->offsets[k][1] * WINDOW_COLUMNS + stencil->offsets[k][0];
+		add_depth_neighbour(own_depth + offset, depth_sums);
+		if (!one_object)
+			add_id_neighbour(own, own_depth, offset, id_halves);
 	}
-	for (int k = 0; k < stencil->count; k++)
-		add_depth_neighbour(window, stencil->offsets[k], count, depth_sums);
-	for (int k = 0; !one_object && k < stencil->count; k++)
-		add_id_neighbour(window, stencil->offsets[k], count, id_sums);
-	for (int i = 0; i < count; i++) {
+	for (int i = 0; i < GZ_LINE_COLUMNS; i++) {
 		const float beyond = depth_sums[i] - neighbours * (own_depth[i] + threshold);
 		const float inner = beyond > 0 ? GZ_LINE_INNER : GZ_LINE_NONE;
-		const float line = id_sums[i] > 0 ? GZ_LINE_SILHOUETTE : inner;
+		const float line = id_halves[i] > 0 ? GZ_LINE_SILHOUETTE : inner;
 		out_lines[i] = own[i] != 0 ? line : GZ_LINE_NONE;
 	}
 }
 
 /* gz_feature_lines() */
-static void find_lines(const struct gz_line_planes *planes, const struct gz_plane_band *band,
-		       enum gz_line_filter filter, float threshold, float *out_lines)
+static void find_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
+		       float threshold, float *out_lines)
 {
-	const struct line_stencil *stencil = &line_stencils[filter];
-	struct line_window window;
-	for (int y = band->first; y < band->end; y++)
-		for (int x = 0; x < band->width; x += LINE_COLUMNS) {
-			const int rest = band->width - x;
-			const struct line_place place = { x, y,
-							  rest < LINE_COLUMNS ? rest : LINE_COLUMNS,
-							  stencil->reach };
-			float *lines = out_lines + (ptrdiff_t)y * band->width + x;
-			take_window(planes, band, &place, &window);
-			filter_lines(&window, stencil, &place, threshold, lines);
-		}
+	const struct window_look look = look_at_window(window, rows, threshold);
+	if (look.one_object && (look.even || window->ids[0][0] == 0)) {
+		memset(out_lines, 0, /* GZ_LINE_NONE */
+		       (size_t)rows * GZ_LINE_COLUMNS * sizeof *out_lines);
+		return;
+	}
+	for (int row = 0; row < rows; row++)
+		filter_lines(&window->ids[REACH + row][REACH], &window->depth[REACH + row][REACH],
+			     &line_stencils[filter], look.one_object, threshold,
+			     out_lines + (size_t)row * GZ_LINE_COLUMNS);
 }
 
 #endif

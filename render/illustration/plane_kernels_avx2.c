@@ -4,4 +4,6 @@
 #include "render/illustration/depth_blur_loops.h"
 #include "render/illustration/feature_lines_loops.h"
 
-const struct gz_plane_kernels gz_plane_kernels_avx2 = { blur_rows, blur_columns, find_lines };
+const struct gz_plane_kernels gz_plane_kernels_avx2 = {
+	blur_rows, blur_columns, share_depth, halve_rows, enlarge_row, find_lines,
+};

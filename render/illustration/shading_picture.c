@@ -5,51 +5,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/illustration/depth_blur.h"
-#include "render/illustration/feature_lines.h"
-#include "render/illustration/shading_map.h"
-#include "render/illustration/shading_parameters.h"
-#include "render/illustration/tone_curve.h"
+#include "render/illustration/shading_tile.h"
 
-/* Rows of a part of the work. Chosen: planes of 16 rows stay in the second-level cache. */
-enum { ROWS_A_PART = 16 };
+/* Rows that are reduced to cells at once: whole cells of every level. */
+enum { REDUCED_ROWS = 1 << GZ_BLUR_LEVELS_MAX, LEVELS = GZ_BLUR_LEVELS_MAX + 1 };
 
-/* How much farther than a pixel its neighbours are at an inner line, share of the scene's depth.
- * Chosen: folds of a bone show, and its round sides do not. */
-#define LINE_THRESHOLD 0.004F
+/* Both uses of blurred depth. */
+enum blur_use { BLUR_EDGE, BLUR_SHADOW, BLURS };
 
-/* The planes in between. */
-enum picture_plane {
-	PLANE_MAP,
-	PLANE_NEARNESS, /* depth from 0 (near) to 1 (far) */
-	PLANE_EDGE_ROWS,
-	PLANE_EDGE,
-	PLANE_SHADOW_ROWS,
-	PLANE_SHADOW,
-	PLANE_HAZE,
-	PLANE_SCENE,
-	PLANE_STRONG,
-	PLANE_THIN,
-	PICTURE_PLANES,
+/* What a worker has for itself. */
+struct worker_room {
+	struct gz_tone_histogram histogram;
+	struct gz_shading_tile tile;
 };
 
 struct gz_shading_picture {
 	float *memory;
-	size_t capacity; /* floats of a plane */
-	float *planes[PICTURE_PLANES];
-	struct gz_tone_histogram *histograms; /* of each worker */
-	int histogram_count;
+	size_t capacity; /* floats */
+	struct worker_room *rooms;
+	int room_count;
+	float *map;
+	float *levels[LEVELS]; /* depth as shares; NULL: not needed. Level 0 is that of the pixels
+				*/
+	float *rows[BLURS], *blurred[BLURS]; /* cells; NULL: not wanted */
+	float *row_room;                     /* two rows of each worker */
+	struct gz_depth_blur blurs[BLURS];
+	int levels_most; /* the highest level that is needed; -1: no blur is wanted */
 	struct gz_tone_curve curve;
 	struct gz_haze_table haze;
-	struct gz_gaussian edge, shadow;
 };
 
 /* What the workers of a frame share. */
 struct picture_job {
 	struct gz_shading_picture *picture;
 	const struct gz_shading_frame *frame;
-	const struct gz_shading_settings *settings;
-	struct gz_shading_weights weights;
+	struct gz_shading_shared shared;
 };
 
 enum gz_result gz_shading_picture_create(struct gz_shading_picture **out_picture)
@@ -63,215 +53,271 @@ void gz_shading_picture_destroy(struct gz_shading_picture **picture)
 	if (!*picture)
 		return;
 	free((*picture)->memory);
-	free((*picture)->histograms);
+	free((*picture)->rooms);
 	free(*picture);
 	*picture = NULL;
 }
 
-static enum gz_result make_picture_room(struct gz_shading_picture *picture, size_t pixels,
-					int threads)
+/* Which blurs and levels a frame needs. */
+static void plan_blurs(struct gz_shading_picture *picture, const struct gz_shading_frame *frame,
+		       const struct gz_shading_settings *settings, bool wanted[BLURS])
 {
-	if (picture->histogram_count < threads) {
-		free(picture->histograms);
-		picture->histogram_count = 0;
-		picture->histograms = calloc((size_t)threads, sizeof *picture->histograms);
-		if (!picture->histograms)
-			return GZ_ERR_NO_MEM;
-		picture->histogram_count = threads;
+	const double widths[BLURS] = { settings->edge_light_width, settings->overlap_shadow_width };
+	wanted[BLUR_EDGE] = settings->edge_light > 0;
+	wanted[BLUR_SHADOW] = settings->overlap_shadow > 0;
+	picture->levels_most = -1;
+	for (int i = 0; i < BLURS; i++) {
+		gz_depth_blur_make(widths[i] * frame->height, &picture->blurs[i]);
+		if (wanted[i] && picture->blurs[i].level > picture->levels_most)
+			picture->levels_most = picture->blurs[i].level;
 	}
-	if (picture->capacity < pixels) {
+}
+
+static size_t cells_of_level(const struct gz_shading_frame *frame, int level)
+{
+	return (size_t)gz_blur_cells(frame->width, level) *
+	       (size_t)gz_blur_cells(frame->height, level);
+}
+
+/* Give out @p count floats from @p used on, whole lines of the caches. */
+static float *take_floats(float *memory, size_t count, size_t *used)
+{
+	float *taken = memory ? memory + *used : NULL;
+	*used += (count + 15) / 16 * 16;
+	return taken;
+}
+
+/* Lay all planes of a frame out one after the other. @param memory  NULL: only to count
+ * @return floats in all */
+static size_t lay_planes_out(struct gz_shading_picture *picture,
+			     const struct gz_shading_frame *frame, const bool wanted[BLURS],
+			     int threads, float *memory)
+{
+	size_t used = 0;
+	picture->map = take_floats(memory, cells_of_level(frame, 0), &used);
+	picture->row_room = take_floats(memory, (size_t)threads * 2 * (size_t)frame->width, &used);
+	for (int level = 0; level < LEVELS; level++) {
+		bool needed = level > 0 && level <= picture->levels_most;
+		for (int i = 0; i < BLURS; i++)
+			needed |= wanted[i] && picture->blurs[i].level == level;
+		picture->levels[level] = NULL;
+		if (needed)
+			picture->levels[level] =
+				take_floats(memory, cells_of_level(frame, level), &used);
+	}
+	for (int i = 0; i < BLURS; i++) {
+		const size_t cells = cells_of_level(frame, picture->blurs[i].level);
+		picture->rows[i] = wanted[i] ? take_floats(memory, cells, &used) : NULL;
+		picture->blurred[i] = wanted[i] ? take_floats(memory, cells, &used) : NULL;
+	}
+	return used;
+}
+
+static enum gz_result make_picture_room(struct gz_shading_picture *picture,
+					const struct gz_shading_frame *frame,
+					const struct gz_shading_settings *settings, int threads)
+{
+	bool wanted[BLURS];
+	if (picture->room_count < threads) {
+		free(picture->rooms);
+		picture->room_count = 0;
+		picture->rooms = calloc((size_t)threads, sizeof *picture->rooms);
+		if (!picture->rooms)
+			return GZ_ERR_NO_MEM;
+		picture->room_count = threads;
+	}
+	plan_blurs(picture, frame, settings, wanted);
+	const size_t floats = lay_planes_out(picture, frame, wanted, threads, NULL);
+	if (picture->capacity < floats) {
 		free(picture->memory);
 		picture->capacity = 0;
-		picture->memory = calloc(pixels, PICTURE_PLANES * sizeof *picture->memory);
+		picture->memory = aligned_alloc(64, floats * sizeof *picture->memory);
 		if (!picture->memory)
 			return GZ_ERR_NO_MEM;
-		picture->capacity = pixels;
+		picture->capacity = floats;
 	}
-	for (size_t i = 0; i < PICTURE_PLANES; i++)
-		picture->planes[i] = picture->memory + i * picture->capacity;
+	(void)lay_planes_out(picture, frame, wanted, threads, picture->memory);
 	return GZ_OK;
 }
 
-static struct gz_plane_band band_of_part(const struct gz_shading_frame *frame, size_t part)
-{
-	const int first = (int)part * ROWS_A_PART, rest = frame->height - first;
-	return (struct gz_plane_band) { frame->width, frame->height, first,
-					first + (rest < ROWS_A_PART ? rest : ROWS_A_PART) };
-}
-
-static void copy_floats(const void *plane, size_t from, size_t count, float *out)
-{
-	memcpy(out, (const char *)plane + from * sizeof *out, count * sizeof *out);
-}
-
-/* Before the histogram is complete: depth from 0 to 1, tone that is counted, and both blurs along
- * rows. */
-static void begin_part(void *user, size_t part, int worker)
-{
-	const struct picture_job *job = user;
-	const struct gz_shading_frame *frame = job->frame;
-	const struct gz_plane_band band = band_of_part(frame, part);
-	float *const *planes = job->picture->planes;
-	const size_t from = (size_t)band.first * (size_t)band.width;
-	const size_t count = (size_t)(band.end - band.first) * (size_t)band.width;
-	float *map = planes[PLANE_MAP] + from, *nearness = planes[PLANE_NEARNESS] + from;
-	float *room = planes[PLANE_SCENE] + from;
-	copy_floats(frame->depth, from, count, room);
-	gz_shading_viewer_distance(room, count, frame->near, frame->far, nearness);
-	copy_floats(frame->tone, from, count, map);
-	for (size_t i = 0; i < count; i++) {
-		const bool empty = frame->ids[from + i] == 0;
-		nearness[i] = empty ? 1 : nearness[i];
-		map[i] = empty ? 1 : map[i];
-	}
-	gz_tone_count(map, frame->ids + from, count, &job->picture->histograms[worker]);
-	if (job->settings->edge_light > 0)
-		gz_blur_along_rows(&job->picture->edge, &band, planes[PLANE_NEARNESS],
-				   planes[PLANE_EDGE_ROWS]);
-	if (job->settings->overlap_shadow > 0)
-		gz_blur_along_rows(&job->picture->shadow, &band, planes[PLANE_NEARNESS],
-				   planes[PLANE_SHADOW_ROWS]);
-}
-
-/* Gather what scene information takes away: 1 - scene = product of all 1 - w P. */
-static void gather_information(const float *values, size_t count, double weight, float *scene)
-{
-	for (size_t i = 0; i < count; i++)
-		scene[i] = 1 - (1 - scene[i]) * (1 - (float)weight * values[i]);
-}
-
-/* The scene information of a part; uses the planes of edge light and shadow as room before those
- * are blurred. */
-static bool fill_scene(const struct picture_job *job, size_t from, size_t count)
+/* Depth of a row as shares of the scene's: in its plane if there is one, otherwise in the room. */
+static float *share_row(const struct picture_job *job, int y, float *room)
 {
 	const struct gz_shading_frame *frame = job->frame;
-	const struct gz_shading_settings *settings = job->settings;
-	float *scene = job->picture->planes[PLANE_SCENE] + from;
-	float *room = job->picture->planes[PLANE_EDGE] + from;
-	const bool by_object = settings->object_distance > 0 && frame->object_distance_mm;
-	if (!(settings->importance > 0) && !(settings->viewer_distance > 0) && !by_object)
-		return false;
-	memset(scene, 0, count * sizeof *scene);
-	if (settings->importance > 0) {
-		gz_shading_unimportance(frame->ids + from, count, frame->importances,
-					frame->objects, room);
-		gather_information(room, count, settings->importance, scene);
-	}
-	if (settings->viewer_distance > 0)
-		gather_information(job->picture->planes[PLANE_NEARNESS] + from, count,
-				   settings->viewer_distance, scene);
-	if (by_object) {
-		float *distances = job->picture->planes[PLANE_SHADOW] + from;
-		copy_floats(frame->object_distance_mm, from, count, distances);
-		gz_shading_object_distance(distances, count, (float)settings->object_distance_mm,
-					   room);
-		gather_information(room, count, settings->object_distance, scene);
-	}
-	return true;
+	const size_t from = (size_t)y * (size_t)frame->width;
+	float *pixels = job->picture->levels[0];
+	float *shares = pixels ? pixels + from : room;
+	gz_depth_share((const char *)frame->depth + from * sizeof(float), frame->ids + from,
+		       frame->width, &job->shared.range, shares);
+	return shares;
 }
 
-static void fill_lines(const struct picture_job *job, const struct gz_plane_band *band,
-		       struct gz_shading_layers *layers)
+/* Rows [first, end) of a level that lie in a part. */
+static struct gz_plane_band band_of_level(const struct gz_shading_frame *frame, int level,
+					  size_t part)
 {
-	float *const *planes = job->picture->planes;
-	const struct gz_line_planes found_in = { job->frame->ids, planes[PLANE_NEARNESS] };
-	const int width = job->settings->line_width;
-	gz_feature_lines(&found_in, band, (enum gz_line_filter)(GZ_LINES_4 + width - 1),
-			 LINE_THRESHOLD, planes[PLANE_STRONG]);
-	layers->strong_lines = planes[PLANE_STRONG];
-	if (width == 1 && !layers->scene)
-		return;
-	gz_feature_lines(&found_in, band, GZ_LINES_4, LINE_THRESHOLD, planes[PLANE_THIN]);
-	layers->thin_lines = planes[PLANE_THIN];
+	const int height = gz_blur_cells(frame->height, level), rows = REDUCED_ROWS >> level;
+	const int first = (int)part * rows, rest = height - first;
+	return (struct gz_plane_band) { gz_blur_cells(frame->width, level), height, first,
+					first + (rest < rows ? rest : rows) };
 }
 
-/* The planes of one part, and which there are. */
-static struct gz_shading_layers fill_layers(const struct picture_job *job,
-					    const struct gz_plane_band *band)
+/* The first rows of cells, from pixels. */
+static void reduce_pixels(const struct picture_job *job, size_t part, int worker)
 {
-	struct gz_shading_picture *picture = job->picture;
-	const struct gz_shading_settings *settings = job->settings;
-	float *const *planes = picture->planes;
-	const size_t from = (size_t)band->first * (size_t)band->width;
-	const size_t count = (size_t)(band->end - band->first) * (size_t)band->width;
-	struct gz_shading_layers layers = { .ids = job->frame->ids,
-					    .depth = planes[PLANE_NEARNESS] };
-	if (fill_scene(job, from, count))
-		layers.scene = planes[PLANE_SCENE];
-	if (settings->edge_light > 0) {
-		gz_blur_along_columns(&picture->edge, band, planes[PLANE_EDGE_ROWS],
-				      planes[PLANE_EDGE]);
-		layers.blurred_edge = planes[PLANE_EDGE];
+	const struct gz_shading_picture *picture = job->picture;
+	const int width = job->frame->width;
+	const struct gz_plane_band band = band_of_level(job->frame, 0, part);
+	float *room = picture->row_room + (size_t)worker * 2 * (size_t)width;
+	for (int y = band.first; y < band.end; y += 2) {
+		const float *upper = share_row(job, y, room);
+		const float *lower = y + 1 < band.end ? share_row(job, y + 1, room + width) : upper;
+		if (picture->levels_most > 0)
+			gz_depth_halve(upper, lower, width,
+				       picture->levels[1] +
+					       (ptrdiff_t)(y / 2) * gz_blur_cells(width, 1));
 	}
-	if (settings->overlap_shadow > 0) {
-		gz_blur_along_columns(&picture->shadow, band, planes[PLANE_SHADOW_ROWS],
-				      planes[PLANE_SHADOW]);
-		layers.blurred_shadow = planes[PLANE_SHADOW];
-	}
-	if (settings->haze > 0) {
-		gz_shading_haze(planes[PLANE_NEARNESS] + from, count, &picture->haze,
-				planes[PLANE_HAZE] + from);
-		layers.haze = planes[PLANE_HAZE];
-	}
-	if (settings->lines > 0)
-		fill_lines(job, band, &layers);
-	return layers;
 }
 
-static void end_part(void *user, size_t part, int worker)
+/* Cells of a level from those of the level before it. */
+static void reduce_cells(const struct picture_job *job, int level, size_t part)
+{
+	const struct gz_shading_picture *picture = job->picture;
+	const struct gz_plane_band band = band_of_level(job->frame, level, part);
+	const int width = gz_blur_cells(job->frame->width, level - 1);
+	const int height = gz_blur_cells(job->frame->height, level - 1);
+	for (int y = band.first; y < band.end; y++) {
+		const float *upper = picture->levels[level - 1] + (ptrdiff_t)(2 * y) * width;
+		const float *lower = 2 * y + 1 < height ? upper + width : upper;
+		gz_depth_halve(upper, lower, width,
+			       picture->levels[level] + (ptrdiff_t)y * band.width);
+	}
+}
+
+/* Count the tone of every second pixel of every second row: what is between is like it. */
+static void count_tones(const struct picture_job *job, size_t part, int worker)
+{
+	const struct gz_shading_frame *frame = job->frame;
+	const struct gz_plane_band band = band_of_level(frame, 0, part);
+	for (int y = band.first; y < band.end; y += 2) {
+		const size_t from = (size_t)y * (size_t)frame->width;
+		gz_tone_count((const char *)frame->tone + from * sizeof(float), frame->ids + from,
+			      (size_t)frame->width, 2, &job->picture->rooms[worker].histogram);
+	}
+}
+
+/* Before the histogram is complete: count tones, reduce depth, and blur it along rows. */
+static void reduce_part(void *user, size_t part, int worker)
 {
 	const struct picture_job *job = user;
-	const struct gz_plane_band band = band_of_part(job->frame, part);
-	float *map = job->picture->planes[PLANE_MAP];
-	const size_t from = (size_t)band.first * (size_t)band.width;
-	const size_t count = (size_t)(band.end - band.first) * (size_t)band.width;
-	const struct gz_shading_layers layers = fill_layers(job, &band);
+	const struct gz_shading_picture *picture = job->picture;
+	count_tones(job, part, worker);
+	if (picture->levels_most >= 0)
+		reduce_pixels(job, part, worker);
+	for (int level = 2; level <= picture->levels_most; level++)
+		reduce_cells(job, level, part);
+	for (int i = 0; i < BLURS; i++) {
+		const struct gz_depth_blur *blur = &picture->blurs[i];
+		const struct gz_plane_band band = band_of_level(job->frame, blur->level, part);
+		if (picture->rows[i])
+			gz_blur_along_rows(&blur->gaussian, &band, picture->levels[blur->level],
+					   picture->rows[i]);
+	}
+}
+
+static void blur_part(void *user, size_t part, int worker)
+{
+	const struct picture_job *job = user;
+	const struct gz_shading_picture *picture = job->picture;
 	(void)worker;
-	gz_tone_apply(&job->picture->curve, job->frame->ids + from, count, map + from);
-	gz_shading_map_compose(&layers, &band, &job->weights, 1, map);
+	for (int i = 0; i < BLURS; i++) {
+		const struct gz_depth_blur *blur = &picture->blurs[i];
+		const struct gz_plane_band band = band_of_level(job->frame, blur->level, part);
+		if (picture->blurred[i])
+			gz_blur_along_columns(&blur->gaussian, &band, picture->rows[i],
+					      picture->blurred[i]);
+	}
 }
 
-static void begin_frame(struct picture_job *job)
+static void compose_part(void *user, size_t part, int worker)
+{
+	const struct picture_job *job = user;
+	for (int x = 0; x < job->frame->width; x += GZ_SHADING_TILE_COLUMNS)
+		gz_shading_tile_compose(&job->shared, x, (int)part * GZ_SHADING_TILE_ROWS,
+					&job->picture->rooms[worker].tile);
+}
+
+static struct gz_blurred_cells blurred_cells(const struct picture_job *job, enum blur_use use)
+{
+	const int level = job->picture->blurs[use].level;
+	return (struct gz_blurred_cells) { level, gz_blur_cells(job->frame->width, level),
+					   gz_blur_cells(job->frame->height, level),
+					   job->picture->blurred[use] };
+}
+
+static void begin_frame(struct picture_job *job, const struct gz_shading_settings *settings)
 {
 	struct gz_shading_picture *picture = job->picture;
-	const struct gz_shading_settings *settings = job->settings;
-	const double height = job->frame->height;
-	gz_gaussian_make(settings->edge_light_width * height, &picture->edge);
-	gz_gaussian_make(settings->overlap_shadow_width * height, &picture->shadow);
 	gz_haze_table_make(settings->haze_near, settings->haze_far, settings->haze_exponent,
 			   &picture->haze);
-	memset(picture->histograms, 0,
-	       (size_t)picture->histogram_count * sizeof *picture->histograms);
-	job->weights = (struct gz_shading_weights) {
-		.scene = 1, /* its weights are in the plane */
-		.edge_light = (float)settings->edge_light,
-		.overlap_shadow = (float)settings->overlap_shadow,
-		.haze = (float)settings->haze,
-		.lines = (float)settings->lines,
-		.background = (float)settings->haze_background,
+	for (int i = 0; i < picture->room_count; i++)
+		picture->rooms[i].histogram = (struct gz_tone_histogram) { 0 };
+	job->shared = (struct gz_shading_shared) {
+		.frame = job->frame,
+		.settings = settings,
+		.range = { job->frame->near, job->frame->far },
+		.edge = blurred_cells(job, BLUR_EDGE),
+		.shadow = blurred_cells(job, BLUR_SHADOW),
+		.curve = &picture->curve,
+		.haze = &picture->haze,
+		.map = picture->map,
+		.weights = {
+			.scene = 1, /* its weights are in the plane */
+			.edge_light = (float)settings->edge_light,
+			.overlap_shadow = (float)settings->overlap_shadow,
+			.haze = (float)settings->haze,
+			.lines = (float)settings->lines,
+			.background = (float)settings->haze_background,
+		},
 	};
+}
+
+/* The curve of all workers' counts. */
+static void make_curve(struct gz_shading_picture *picture, float equalisation)
+{
+	struct gz_tone_histogram *all = &picture->rooms[0].histogram;
+	for (int i = 1; i < picture->room_count; i++)
+		for (size_t bin = 0; bin < GZ_TONE_BINS; bin++)
+			all->counts[bin] += picture->rooms[i].histogram.counts[bin];
+	gz_tone_curve_make(all, 1, &picture->curve);
+	gz_tone_curve_soften(equalisation, &picture->curve);
 }
 
 enum gz_result gz_shading_picture_compose(struct gz_shading_picture *picture,
 					  const struct gz_shading_frame *frame,
 					  const struct gz_shading_settings *settings,
-					  struct gz_workers *workers, const float **out_map)
+					  struct gz_workers *workers, uint32_t *out_pixels,
+					  const float **out_map)
 {
-	struct picture_job job = { .picture = picture, .frame = frame, .settings = settings };
+	struct picture_job job = { .picture = picture, .frame = frame };
 	if (frame->width < 1 || frame->height < 1 || !(frame->near < frame->far) ||
 	    !gz_options_hold(gz_shading_options, gz_shading_option_count, settings))
 		return GZ_ERR_INVAL;
-	const size_t pixels = (size_t)frame->width * (size_t)frame->height;
-	const size_t parts = ((size_t)frame->height + ROWS_A_PART - 1) / ROWS_A_PART;
-	const enum gz_result result = make_picture_room(picture, pixels, gz_workers_count(workers));
+	const enum gz_result result =
+		make_picture_room(picture, frame, settings, gz_workers_count(workers));
 	if (result != GZ_OK)
 		return result;
-	begin_frame(&job);
-	gz_workers_run(workers, begin_part, &job, parts);
-	gz_tone_curve_make(picture->histograms, (size_t)picture->histogram_count, &picture->curve);
-	gz_tone_curve_soften((float)settings->equalisation, &picture->curve);
-	gz_workers_run(workers, end_part, &job, parts);
-	*out_map = picture->planes[PLANE_MAP];
+	const size_t height = (size_t)frame->height;
+	const size_t reduced = (height + REDUCED_ROWS - 1) / REDUCED_ROWS;
+	begin_frame(&job, settings);
+	job.shared.out_pixels = out_pixels;
+	gz_workers_run(workers, reduce_part, &job, reduced);
+	make_curve(picture, (float)settings->equalisation);
+	if (picture->levels_most >= 0)
+		gz_workers_run(workers, blur_part, &job, reduced);
+	gz_workers_run(workers, compose_part, &job,
+		       (height + GZ_SHADING_TILE_ROWS - 1) / GZ_SHADING_TILE_ROWS);
+	*out_map = picture->map;
 	return GZ_OK;
 }
 

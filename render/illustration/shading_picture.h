@@ -41,6 +41,7 @@ enum gz_result gz_shading_picture_create(struct gz_shading_picture **out_picture
  *
  * @param settings  within the ranges of their table
  * @param workers   share the rows. The same bits for any number
+ * @param[out] out_pixels  width * height pixels as gz_shading_grey() makes them; NULL: not wanted
  * @param[out] out_map  width * height brightnesses, [0, 1]; owned by the picture, valid until the
  *                      next call
  * @retval GZ_ERR_INVAL   a side below 1, near not below far, or settings out of range
@@ -49,7 +50,8 @@ enum gz_result gz_shading_picture_create(struct gz_shading_picture **out_picture
 enum gz_result gz_shading_picture_compose(struct gz_shading_picture *picture,
 					  const struct gz_shading_frame *frame,
 					  const struct gz_shading_settings *settings,
-					  struct gz_workers *workers, const float **out_map);
+					  struct gz_workers *workers, uint32_t *out_pixels,
+					  const float **out_map);
 
 /** Write a map as opaque grey pixels, R, G, B, A in memory order. */
 void gz_shading_grey(const float *map, size_t count, uint32_t *out_pixels);

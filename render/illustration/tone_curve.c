@@ -1,5 +1,7 @@
 #include "render/illustration/tone_curve.h"
 
+#include <string.h>
+
 /* The bin of a brightness. */
 static size_t tone_bin(float value)
 {
@@ -9,11 +11,16 @@ static size_t tone_bin(float value)
 	return at < GZ_TONE_BINS ? (size_t)at : GZ_TONE_BINS - 1; /* NaN: the last */
 }
 
-void gz_tone_count(const float *map, const uint32_t *ids, size_t count,
+void gz_tone_count(const void *map, const uint32_t *ids, size_t count, size_t step,
 		   struct gz_tone_histogram *histogram)
 {
-	for (size_t i = 0; i < count; i++)
-		histogram->counts[tone_bin(map[i])] += ids[i] != 0;
+	for (size_t i = 0; i < count; i += step) {
+		float value;
+		if (ids[i] == 0)
+			continue;
+		memcpy(&value, (const char *)map + i * sizeof value, sizeof value);
+		histogram->counts[tone_bin(value)]++;
+	}
 }
 
 void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count,

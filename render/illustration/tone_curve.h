@@ -25,12 +25,13 @@ struct gz_tone_curve {
 };
 
 /**
- * Count pixels.
+ * Count pixels 0, step, 2 step, ... below @p count.
  *
- * @param map  brightness of @p count pixels; below 0 counts as 0, above 1 and NaN as 1
+ * @param map  floats, which may have been stored as words (struct gz_plane): brightness; below 0
+ *             counts as 0, above 1 and NaN as 1
  * @param ids  object of each; those of object 0, the background, do not count
  */
-void gz_tone_count(const float *map, const uint32_t *ids, size_t count,
+void gz_tone_count(const void *map, const uint32_t *ids, size_t count, size_t step,
 		   struct gz_tone_histogram *histogram);
 
 /**

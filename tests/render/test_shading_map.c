@@ -96,6 +96,101 @@ static void bands_and_blocks_change_nothing(void **state)
 	}
 }
 
+static void depth_is_a_share_of_the_scene(void **state)
+{
+	(void)state;
+	const float depth[6] = { 5, 10, 15, 25, NAN, 15 };
+	const uint32_t ids[6] = { 1, 1, 1, 1, 1, 0 };
+	float found[6];
+	gz_depth_share(depth, ids, 6, &(struct gz_depth_range) { 10, 20 }, found);
+	check_map(found, (const double[]) { 0, 0, 0.5, 1, 1, 1 }, 6);
+}
+
+static void cells_are_means_and_pixels_lie_between_them(void **state)
+{
+	(void)state;
+	const float upper[5] = { 0, 0.2F, 0.4F, 0.8F, 0.5F }, lower[5] = { 0.2F, 0.4F, 0, 0, 0.7F };
+	float cells[3], pixels[GZ_BLUR_COLUMNS];
+	gz_depth_halve(upper, lower, 5, cells);
+	check_map(cells, (const double[]) { 0.2, 0.3, 0.6 }, 3);
+	/* Two rows of three cells of 4 by 4 pixels; row 5 is 7/8 of the way to the second one. */
+	const float plane[6] = { 0, 0, 0, 0.8F, 0.8F, 0 };
+	gz_depth_enlarge(plane, 3, 2, 2, 0, 5, pixels);
+	const double low = 0.875 * 0.8;
+	check_map(pixels,
+		  (const double[]) { low, low, low, low, low, low, 0.875 * low, 0.625 * low,
+				     0.375 * low, 0.125 * low, 0, 0, 0, 0 },
+		  14);
+}
+
+/* A blur of cells against the Gaussian of the pixels, on a disc, a bar and a ramp before a
+ * background; for widths that take each level up to the third. Within a cell of the border,
+ * where nothing lies beyond to be interpolated with, errors are told apart. */
+static double error_of_cells(double deviation, int *out_level, double *out_border)
+{
+	enum { WIDE = 190, HIGH = 131, CELLS = WIDE * HIGH };
+	static float planes[4][CELLS], rows[CELLS], blurred[CELLS], exact[CELLS];
+	struct gz_depth_blur blur;
+	struct gz_gaussian gaussian;
+	double inside = 0, border = 0;
+	for (int i = 0; i < CELLS; i++) {
+		const int x = i % WIDE, y = i / WIDE;
+		const bool near = hypot(x - 60.3, y - 60.7) < 40 || (x > 150 && x < 157);
+		const float ramp = (float)fmin(fmax((x - 30) / 130.0, 0), 1);
+		planes[0][i] = near ? 0 : y > 110 ? ramp : 1;
+	}
+	gz_depth_blur_make(deviation, &blur);
+	for (int level = 1; level <= blur.level; level++) {
+		const int wide = gz_blur_cells(WIDE, level - 1),
+			  high = gz_blur_cells(HIGH, level - 1);
+		for (int y = 0; y < gz_blur_cells(HIGH, level); y++) {
+			const float *upper = planes[level - 1] + (ptrdiff_t)2 * y * wide;
+			gz_depth_halve(upper, 2 * y + 1 < high ? upper + wide : upper, wide,
+				       planes[level] + (ptrdiff_t)y * gz_blur_cells(WIDE, level));
+		}
+	}
+	const int wide = gz_blur_cells(WIDE, blur.level), high = gz_blur_cells(HIGH, blur.level);
+	const struct gz_plane_band cells = { wide, high, 0, high }, all = { WIDE, HIGH, 0, HIGH };
+	gz_blur_along_rows(&blur.gaussian, &cells, planes[blur.level], rows);
+	gz_blur_along_columns(&blur.gaussian, &cells, rows, blurred);
+	gz_gaussian_make(deviation, &gaussian);
+	gz_blur_along_rows(&gaussian, &all, planes[0], rows);
+	gz_blur_along_columns(&gaussian, &all, rows, exact);
+	for (int y = 0; y < HIGH; y++)
+		for (int x = 0; x < WIDE; x += GZ_BLUR_COLUMNS) {
+			float pixels[GZ_BLUR_COLUMNS];
+			gz_depth_enlarge(blurred, wide, high, blur.level, x, y, pixels);
+			for (int k = x; k < x + GZ_BLUR_COLUMNS && k < WIDE; k++) {
+				const int least =
+					(int)fmin(fmin(k, WIDE - 1 - k), fmin(y, HIGH - 1 - y));
+				double *worst = least < 1 << blur.level ? &border : &inside;
+				const double right = (double)exact[y * WIDE + k];
+				*worst = fmax(*worst, fabs((double)pixels[k - x] - right));
+			}
+		}
+	*out_border = border;
+	*out_level = blur.level;
+	return inside;
+}
+
+static void blur_of_cells_is_that_of_pixels(void **state)
+{
+	(void)state;
+	const double deviations[6] = { 1.3, 4.9, 5.0, 9.9, 10, 21 };
+	const int levels[6] = { 0, 0, 1, 1, 2, 3 };
+	for (int i = 0; i < 6; i++) {
+		int level = -1;
+		double border = 1;
+		const double error = error_of_cells(deviations[i], &level, &border);
+		if (getenv("GZ_TEST_PRINT"))
+			print_message("deviation %g: level %d, error %.5f, border %.5f\n",
+				      deviations[i], level, error, border);
+		assert_int_equal(level, levels[i]);
+		assert_true(error <= (level == 0 ? 1e-6 : 0.01));
+		assert_true(border <= (level == 0 ? 1e-6 : 0.04));
+	}
+}
+
 /* ---- tone ---- */
 
 /* Five object pixels of four brightnesses; two pixels of background do not count. */
@@ -107,8 +202,8 @@ static void tone_becomes_the_share_of_pixels_no_brighter(void **state)
 	float map[7] = { 0.3F, 0.1F, 0.5F, 0.3F, 0.9F, 0.31F, 0 };
 	const uint32_t ids[7] = { 1, 2, 0, 1, 7, 1, 0 };
 	memset(histograms, 0, sizeof histograms);
-	gz_tone_count(map, ids, 3, &histograms[0]);
-	gz_tone_count(map + 3, ids + 3, 4, &histograms[1]);
+	gz_tone_count(map, ids, 3, 1, &histograms[0]);
+	gz_tone_count(map + 3, ids + 3, 4, 1, &histograms[1]);
 	gz_tone_curve_make(histograms, 2, &curve);
 	gz_tone_apply(&curve, ids, 7, map);
 	check_map(map, (const double[]) { 0.6, 0.2, 0.5, 0.6, 1, 0.8, 0 }, 7);
@@ -125,26 +220,56 @@ static void tone_without_objects_stays(void **state)
 	gz_tone_apply(&curve, ids, 3, map);
 	assert_true(map[0] == 0 && fabs((double)map[1] - 0.5) < 1e-3 && map[2] == 1);
 	float odd[3] = { -1, 2, NAN };
-	gz_tone_count(odd, ids, 3, &empty);
+	gz_tone_count(odd, ids, 3, 1, &empty);
 	assert_int_equal(empty.counts[0], 1);
 	assert_int_equal(empty.counts[GZ_TONE_BINS - 1], 2);
+	gz_tone_count(odd, ids, 3, 2, &empty); /* the first and the third */
+	assert_int_equal(empty.counts[0], 2);
+	assert_int_equal(empty.counts[GZ_TONE_BINS - 1], 3);
 }
 
 /* ---- lines ---- */
 
-/* Draw "# silhouette", "- inner line" and ". none" of a picture of 7 columns. */
-static void check_lines(const struct gz_line_planes *planes, int height, enum gz_line_filter filter,
+/* Planes that lines are found in. */
+struct line_planes {
+	const uint32_t *ids;
+	const float *depth;
+};
+
+static int within(int index, int count)
+{
+	return index < 0 ? 0 : index < count ? index : count - 1;
+}
+
+/* The window of some rows of a picture that is at most as wide as a tile. */
+static void fill_window(const struct line_planes *planes, const int size[2], int first, int rows,
+			struct gz_line_window *window)
+{
+	for (int row = 0; row < rows + 2 * GZ_LINE_REACH; row++)
+		for (int i = 0; i < GZ_LINE_COLUMNS + 2 * GZ_LINE_REACH; i++) {
+			const int y = within(first + row - GZ_LINE_REACH, size[1]);
+			const int pixel = y * size[0] + within(i - GZ_LINE_REACH, size[0]);
+			window->ids[row][i] = planes->ids[pixel];
+			window->depth[row][i] = planes->depth[pixel];
+		}
+}
+
+/* Draw "# silhouette", "- inner line" and ". none" of a picture of 7 columns, in two tiles. */
+static void check_lines(const struct line_planes *planes, int height, enum gz_line_filter filter,
 			const char *right)
 {
-	float lines[7 * 7];
+	static float lines[7 * GZ_LINE_COLUMNS];
+	static struct gz_line_window window;
+	const int size[2] = { 7, height };
 	char found[7 * 7 + 1] = { 0 };
-	/* In two bands, as threads would. */
-	gz_feature_lines(planes, &(struct gz_plane_band) { 7, height, 0, 2 }, filter, 0.05F, lines);
-	gz_feature_lines(planes, &(struct gz_plane_band) { 7, height, 2, height }, filter, 0.05F,
-			 lines);
+	fill_window(planes, size, 0, 2, &window);
+	gz_feature_lines(&window, 2, filter, 0.05F, lines);
+	fill_window(planes, size, 2, height - 2, &window);
+	gz_feature_lines(&window, height - 2, filter, 0.05F, lines + (size_t)2 * GZ_LINE_COLUMNS);
 	for (int i = 0; i < 7 * height; i++) {
-		found[i] = lines[i] == GZ_LINE_SILHOUETTE ? '#' : '.';
-		found[i] = lines[i] == GZ_LINE_INNER ? '-' : found[i];
+		const float line = lines[i / 7 * GZ_LINE_COLUMNS + i % 7];
+		found[i] = line == GZ_LINE_SILHOUETTE ? '#' : '.';
+		found[i] = line == GZ_LINE_INNER ? '-' : found[i];
 	}
 	assert_string_equal(found, right);
 }
@@ -160,7 +285,7 @@ static void silhouettes_lie_on_the_nearer_object(void **state)
 		ids[i] = inside ? 4 : 0;
 		depth[i] = inside ? 0.5F : 1;
 	}
-	const struct gz_line_planes planes = { ids, depth };
+	const struct line_planes planes = { ids, depth };
 	check_lines(&planes, 7, GZ_LINES_4,
 		    "......."
 		    ".######"
@@ -212,7 +337,7 @@ static void order_of_ids_does_not_matter(void **state)
 		depth[i] = i >= 14 ? 0.4F : 0.22F;
 		depth[i] = ids[i] == 2 ? 0.2F : depth[i];
 	}
-	const struct gz_line_planes planes = { ids, depth };
+	const struct line_planes planes = { ids, depth };
 	check_lines(&planes, 4, GZ_LINES_4,
 		    "..#.#.."
 		    "#.###.#"
@@ -230,36 +355,64 @@ static void steps_within_an_object_are_inner_lines(void **state)
 		ids[i] = 9;
 		depth[i] = 0.02F * (float)(i % 7) + (i % 7 >= 4 ? 0.3F : 0);
 	}
-	const struct gz_line_planes planes = { ids, depth };
+	const struct line_planes planes = { ids, depth };
 	check_lines(&planes, 3, GZ_LINES_4,
 		    "...-..."
 		    "...-..."
 		    "...-...");
 }
 
-/* The loops of this processor's instruction set and the portable ones, on random planes with
- * patches of one object and rows that end within a register. */
-static void instruction_sets_give_the_same_bits(void **state)
+/* The loops of this processor's instruction set and the portable ones find the same lines: of one
+ * object that is even, that bends, and of several. */
+static void instruction_sets_find_the_same_lines(void **state)
+{
+	(void)state;
+	static struct gz_line_window windows[3];
+	static float found[GZ_LINE_ROWS * GZ_LINE_COLUMNS],
+		portable[GZ_LINE_ROWS * GZ_LINE_COLUMNS];
+	uint32_t seed = 21;
+	for (int kind = 0; kind < 3; kind++)
+		for (int row = 0; row < GZ_LINE_ROWS + 2 * GZ_LINE_REACH; row++)
+			for (int i = 0; i < GZ_LINE_COLUMNS + 2 * GZ_LINE_REACH; i++) {
+				const double random = field_random(&seed);
+				windows[kind].depth[row][i] = kind > 0 ? (float)random : 0.5F;
+				windows[kind].ids[row][i] =
+					kind > 1 ? (uint32_t)(4 * field_random(&seed)) : 7;
+			}
+	for (int kind = 0; kind < 3; kind++)
+		for (enum gz_line_filter k = GZ_LINES_4; k < GZ_LINE_FILTER_COUNT; k++) {
+			gz_plane_kernels_find()->find_lines(&windows[kind], GZ_LINE_ROWS, k, 0.1F,
+							    found);
+			gz_plane_kernels_portable.find_lines(&windows[kind], GZ_LINE_ROWS, k, 0.1F,
+							     portable);
+			assert_memory_equal(found, portable, sizeof found);
+			size_t lines = 0;
+			for (size_t i = 0; i < sizeof found / sizeof *found; i++)
+				lines += found[i] != GZ_LINE_NONE;
+			assert_true((kind == 0) == (lines == 0));
+		}
+}
+
+static void instruction_sets_blur_alike(void **state)
 {
 	(void)state;
 	enum { WIDE = 203, HIGH = 31 };
 	static uint32_t ids[HIGH * WIDE];
 	static float depth[HIGH * WIDE], found[HIGH * WIDE], portable[HIGH * WIDE];
-	const struct gz_line_planes planes = { ids, depth };
 	const struct gz_plane_band all = { WIDE, HIGH, 0, HIGH };
 	const struct gz_plane_kernels *best = gz_plane_kernels_find();
 	const struct gz_plane_kernels *plain = &gz_plane_kernels_portable;
+	const struct gz_depth_range range = { 0.25F, 0.75F };
 	struct gz_gaussian gaussian;
-	uint32_t seed = 21;
+	uint32_t seed = 22;
 	for (size_t i = 0; i < HIGH * WIDE; i++) {
-		depth[i] = (float)field_random(&seed);
-		ids[i] = i % WIDE < 90 ? i / WIDE > 15 : (uint32_t)(4 * field_random(&seed));
+		depth[i] = i % 7 == 0 ? INFINITY : (float)field_random(&seed);
+		ids[i] = i % 5 != 0;
 	}
-	for (enum gz_line_filter filter = GZ_LINES_4; filter < GZ_LINE_FILTER_COUNT; filter++) {
-		best->find_lines(&planes, &all, filter, 0.1F, found);
-		plain->find_lines(&planes, &all, filter, 0.1F, portable);
-		assert_memory_equal(found, portable, sizeof found);
-	}
+	best->share_depth(depth, ids, HIGH * WIDE, &range, found);
+	plain->share_depth(depth, ids, HIGH * WIDE, &range, portable);
+	assert_memory_equal(found, portable, sizeof found);
+	memcpy(depth, found, sizeof depth);
 	gz_gaussian_make(3, &gaussian);
 	best->blur_rows(&gaussian, &all, depth, found);
 	plain->blur_rows(&gaussian, &all, depth, portable);
@@ -267,6 +420,14 @@ static void instruction_sets_give_the_same_bits(void **state)
 	best->blur_columns(&gaussian, &all, depth, found);
 	plain->blur_columns(&gaussian, &all, depth, portable);
 	assert_memory_equal(found, portable, sizeof found);
+	best->halve_rows(depth, depth + WIDE, WIDE, found);
+	plain->halve_rows(depth, depth + WIDE, WIDE, portable);
+	assert_memory_equal(found, portable, sizeof found);
+	for (int level = 0; level <= GZ_BLUR_LEVELS_MAX; level++) {
+		best->enlarge_row(depth, depth + WIDE, 0.3F, WIDE, level, 64, found);
+		plain->enlarge_row(depth, depth + WIDE, 0.3F, WIDE, level, 64, portable);
+		assert_memory_equal(found, portable, GZ_BLUR_COLUMNS * sizeof *found);
+	}
 }
 
 /* ---- the equations ---- */
@@ -383,12 +544,16 @@ TEST_SUITE(shading_map)
 		cmocka_unit_test(gaussian_adds_up_to_one_and_ends_at_three_deviations),
 		cmocka_unit_test(blur_is_a_weighted_mean_along_rows_and_columns),
 		cmocka_unit_test(bands_and_blocks_change_nothing),
+		cmocka_unit_test(depth_is_a_share_of_the_scene),
+		cmocka_unit_test(cells_are_means_and_pixels_lie_between_them),
+		cmocka_unit_test(blur_of_cells_is_that_of_pixels),
 		cmocka_unit_test(tone_becomes_the_share_of_pixels_no_brighter),
 		cmocka_unit_test(tone_without_objects_stays),
 		cmocka_unit_test(silhouettes_lie_on_the_nearer_object),
 		cmocka_unit_test(order_of_ids_does_not_matter),
 		cmocka_unit_test(steps_within_an_object_are_inner_lines),
-		cmocka_unit_test(instruction_sets_give_the_same_bits),
+		cmocka_unit_test(instruction_sets_find_the_same_lines),
+		cmocka_unit_test(instruction_sets_blur_alike),
 		cmocka_unit_test(fading_moves_towards_white),
 		cmocka_unit_test(edge_light_and_shadow_are_both_parts_of_one_mask),
 		cmocka_unit_test(haze_moves_towards_its_background),

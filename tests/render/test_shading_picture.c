@@ -51,11 +51,14 @@ static void compose(const struct gz_shading_frame *frame,
 	struct gz_shading_picture *picture = NULL;
 	struct gz_workers *workers = NULL;
 	const float *map = NULL;
+	static uint32_t pixels[PIXELS], grey[PIXELS];
 	assert_int_equal(gz_shading_picture_create(&picture), GZ_OK);
 	assert_int_equal(gz_workers_create(threads, &workers), GZ_OK);
-	assert_int_equal(gz_shading_picture_compose(picture, frame, settings, workers, &map),
-			 GZ_OK);
+	assert_int_equal(
+		gz_shading_picture_compose(picture, frame, settings, workers, pixels, &map), GZ_OK);
 	memcpy(out_map, map, PIXELS * sizeof *map);
+	gz_shading_grey(map, PIXELS, grey);
+	assert_memory_equal(pixels, grey, sizeof grey);
 	gz_workers_destroy(&workers);
 	gz_shading_picture_destroy(&picture);
 }
@@ -157,17 +160,19 @@ static void threads_and_sizes_before_change_nothing(void **state)
 	assert_int_equal(gz_workers_create(2, &workers), GZ_OK);
 	small.width = 33;
 	small.height = 1;
-	assert_int_equal(gz_shading_picture_compose(picture, &small, &settings, workers, &map),
-			 GZ_OK);
-	assert_int_equal(gz_shading_picture_compose(picture, &frame, &settings, workers, &map),
-			 GZ_OK);
+	assert_int_equal(
+		gz_shading_picture_compose(picture, &small, &settings, workers, NULL, &map), GZ_OK);
+	assert_int_equal(
+		gz_shading_picture_compose(picture, &frame, &settings, workers, NULL, &map), GZ_OK);
 	assert_memory_equal(alone, map, sizeof alone);
 	small.far = small.near;
-	assert_int_equal(gz_shading_picture_compose(picture, &small, &settings, workers, &map),
-			 GZ_ERR_INVAL);
+	assert_int_equal(
+		gz_shading_picture_compose(picture, &small, &settings, workers, NULL, &map),
+		GZ_ERR_INVAL);
 	settings.line_width = 5;
-	assert_int_equal(gz_shading_picture_compose(picture, &frame, &settings, workers, &map),
-			 GZ_ERR_INVAL);
+	assert_int_equal(
+		gz_shading_picture_compose(picture, &frame, &settings, workers, NULL, &map),
+		GZ_ERR_INVAL);
 	gz_workers_destroy(&workers);
 	gz_shading_picture_destroy(&picture);
 }

@@ -272,12 +272,8 @@ static enum gz_result compose_picture(struct gz_illustrate_caster *caster,
 	};
 	const float *map = NULL;
 	find_depth_range(scene, camera, plan, &frame);
-	const enum gz_result result = gz_shading_picture_compose(
-		caster->picture, &frame, shot->settings, caster->workers, &map);
-	if (result == GZ_OK)
-		gz_shading_grey(map, (size_t)plan->width * (size_t)plan->height,
-				gz_image_words(image));
-	return result;
+	return gz_shading_picture_compose(caster->picture, &frame, shot->settings, caster->workers,
+					  gz_image_words(image), &map);
 }
 
 static enum gz_result copy_plane(const struct gz_plane *from, struct gz_plane *to)

@@ -1,0 +1,60 @@
+/**
+ * @file
+ * One tile of a shading map: all steps that follow the histogram, while its pixels are in the
+ * caches of a core. Within this room.
+ */
+#ifndef GZ_RENDER_ILLUSTRATION_SHADING_TILE_H
+#define GZ_RENDER_ILLUSTRATION_SHADING_TILE_H
+
+#include <stdbool.h>
+
+#include "render/illustration/depth_blur.h"
+#include "render/illustration/feature_lines.h"
+#include "render/illustration/shading_map.h"
+#include "render/illustration/shading_parameters.h"
+#include "render/illustration/shading_picture.h"
+#include "render/illustration/tone_curve.h"
+
+/** Pixels of a tile. */
+enum {
+	GZ_SHADING_TILE_COLUMNS = GZ_LINE_COLUMNS,
+	GZ_SHADING_TILE_ROWS = GZ_LINE_ROWS,
+	GZ_SHADING_TILE_PIXELS = GZ_LINE_COLUMNS * GZ_LINE_ROWS,
+};
+
+/** Blurred depth of a frame, on the cells of its level. */
+struct gz_blurred_cells {
+	int level, width, height;
+	const float *cells; /**< NULL: not wanted */
+};
+
+/** What all tiles of a frame share. All pointers are borrowed. */
+struct gz_shading_shared {
+	const struct gz_shading_frame *frame;
+	const struct gz_shading_settings *settings;
+	struct gz_depth_range range;
+	struct gz_blurred_cells edge, shadow;
+	const struct gz_tone_curve *curve;
+	const struct gz_haze_table *haze;
+	struct gz_shading_weights weights;
+	float *map;           /**< of the whole picture */
+	uint32_t *out_pixels; /**< likewise, as gz_shading_grey() makes them; NULL: not wanted */
+};
+
+/** Planes of a tile, row by row; room of each worker. */
+struct gz_shading_tile {
+	struct gz_line_window window;
+	uint32_t ids[GZ_SHADING_TILE_PIXELS];
+	float depth[GZ_SHADING_TILE_PIXELS], map[GZ_SHADING_TILE_PIXELS];
+	float edge[GZ_SHADING_TILE_PIXELS], shadow[GZ_SHADING_TILE_PIXELS];
+	float haze[GZ_SHADING_TILE_PIXELS], scene[GZ_SHADING_TILE_PIXELS];
+	float strong[GZ_SHADING_TILE_PIXELS], thin[GZ_SHADING_TILE_PIXELS];
+	float room[GZ_SHADING_TILE_PIXELS], other_room[GZ_SHADING_TILE_PIXELS];
+};
+
+/** Compose the tile whose first pixel is (@p x, @p y), multiples of its size. Threads: any, each
+ *  with room of its own. */
+void gz_shading_tile_compose(const struct gz_shading_shared *shared, int x, int y,
+			     struct gz_shading_tile *room);
+
+#endif
