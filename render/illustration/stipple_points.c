@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "render/illustration/stipple_project.h"
+#include "render/illustration/stipple_tiles.h"
 #include "render/illustration/stipple_tone.h"
 
 enum {
@@ -132,6 +133,26 @@ static struct gz_stipple_cluster bound_cluster(const struct gz_stipple_points *p
 	return cluster;
 }
 
+/* A ball around the balls of all clusters. */
+static void bound_points(struct gz_stipple_points *points)
+{
+	float least[3] = { INFINITY, INFINITY, INFINITY };
+	float greatest[3] = { -INFINITY, -INFINITY, -INFINITY };
+	for (size_t i = 0; i < points->cluster_count; i++)
+		for (int axis = 0; axis < 3; axis++) {
+			const struct gz_stipple_cluster *cluster = &points->clusters[i];
+			least[axis] = fminf(least[axis], cluster->centre[axis] - cluster->reach);
+			greatest[axis] =
+				fmaxf(greatest[axis], cluster->centre[axis] + cluster->reach);
+		}
+	float half[3];
+	for (int axis = 0; axis < 3; axis++) {
+		half[axis] = (greatest[axis] - least[axis]) / 2;
+		points->centre[axis] = least[axis] + half[axis];
+	}
+	points->reach = sqrtf(gz_stipple_dot(half, half));
+}
+
 static void fill_points(const struct gz_mesh *mesh, const struct gz_mesh_points *from,
 			const float (*places)[3], const uint32_t *numbers,
 			struct gz_stipple_points *points)
@@ -144,6 +165,7 @@ static void fill_points(const struct gz_mesh *mesh, const struct gz_mesh_points 
 	}
 	for (size_t i = 0; i < points->cluster_count; i++)
 		points->clusters[i] = bound_cluster(points, i * CLUSTER_POINTS);
+	bound_points(points);
 }
 
 static bool allocate_points(size_t count, struct gz_stipple_points *points)
@@ -192,7 +214,7 @@ struct stipple_choice {
 	float area_mm2;                /* of the mesh */
 	struct gz_stipple_disc *discs; /* a place for each point */
 	uint32_t *counts;              /* of discs, by cluster */
-	float sides[4][4];             /* of the picture */
+	struct gz_stipple_tiles tiles; /* of the picture */
 };
 
 /* The disc of a point, if it shows. */
@@ -202,7 +224,9 @@ static bool disc_of_point(const struct stipple_choice *choice, size_t number,
 	const struct gz_stipple_points *points = choice->points;
 	const struct gz_stipple_projector *projector = &choice->projector;
 	struct gz_stipple_spot spot;
-	if (!gz_stipple_project(projector, points->places[number], points->normals[number], &spot))
+	if (!gz_stipple_project(projector, points->places[number], points->normals[number],
+				&spot) ||
+	    !gz_stipple_spot_near(projector, &spot))
 		return false;
 	const float radius =
 		choice->radius * gz_stipple_scale_at(projector->view->scale, spot.x, spot.y);
@@ -219,36 +243,26 @@ static bool disc_of_point(const struct stipple_choice *choice, size_t number,
 	return true;
 }
 
-/* Whether a cluster lies beyond a side of the picture. */
-static bool cluster_is_outside(const struct stipple_choice *choice, const float from[3],
-			       float reach)
-{
-	for (int side = 0; side < 4; side++) {
-		const float *plane = choice->sides[side];
-		if (gz_stipple_dot(plane, from) + plane[3] <
-		    -reach * sqrtf(gz_stipple_dot(plane, plane)))
-			return true;
-	}
-	return false;
-}
-
-/* Whether all of a cluster is seen from behind: its normals are within an angle of its axis. */
-static bool cluster_is_turned(const struct gz_stipple_projector *projector,
-			      const struct gz_stipple_cluster *cluster, const float from[3])
+/* The greatest cosine between a normal of a cluster and the way to the eye; 0 or less if all of it
+ * is seen from behind. Its normals are within an angle of its axis. */
+static float facing_of_cluster(const struct gz_stipple_projector *projector,
+			       const struct gz_stipple_cluster *cluster, const float from[3])
 {
 	const bool flat = projector->orthographic;
 	const float *way = flat ? projector->direction : from;
 	const float length = sqrtf(gz_stipple_dot(way, way));
-	const float along = gz_stipple_dot(cluster->axis, way) / length;
-	if (projector->fronts <= 0 || !(along > 0) || !(cluster->spread > 0))
-		return false;
-	const float sines = sqrtf(fmaxf(0, 1 - along * along)) *
-			    sqrtf(fmaxf(0, 1 - cluster->spread * cluster->spread));
+	const float along = -gz_stipple_dot(cluster->axis, way) / length;
 	const float margin = 1e-4F; /* well above rounding errors */
-	return length * (along * cluster->spread - sines - margin) > (flat ? 0 : cluster->reach);
+	/* the way to the eye turns by this much within the cluster, or less */
+	const float turn = flat ? 0 : cluster->reach / (length - cluster->reach);
+	if (projector->fronts <= 0 || !(turn >= 0) || along >= cluster->spread)
+		return 1;
+	const float across = sqrtf(fmaxf(0, 1 - along * along));
+	const float spread = sqrtf(fmaxf(0, 1 - cluster->spread * cluster->spread));
+	return fminf(along * cluster->spread + across * spread + turn + margin, 1);
 }
 
-/* The largest px² per mm² of a cluster; 0 behind the eye. */
+/* The largest px² per mm² of a cluster, seen straight on; 0 behind the eye. */
 static float largest_in_cluster(const struct gz_stipple_projector *projector, const float from[3],
 				float reach)
 {
@@ -271,14 +285,16 @@ static float limit_of_cluster(const struct stipple_choice *choice,
 			      const struct gz_stipple_cluster *cluster)
 {
 	const struct gz_stipple_projector *projector = &choice->projector;
-	const float reach = 1.0001F * cluster->reach;
-	float from[3];
+	struct gz_stipple_ball ball = { .reach = 1.0001F * cluster->reach };
+	struct gz_stipple_bound bound;
 	for (int axis = 0; axis < 3; axis++)
-		from[axis] = cluster->centre[axis] - projector->origin[axis];
-	if (cluster_is_outside(choice, from, reach) || cluster_is_turned(projector, cluster, from))
+		ball.from[axis] = cluster->centre[axis] - projector->origin[axis];
+	const float facing = facing_of_cluster(projector, cluster, ball.from);
+	if (!(facing > 0) || !gz_stipple_tiles_bound(&choice->tiles, &ball, &bound))
 		return 0;
-	return gz_stipple_density_most() / (PI_F * choice->radius * choice->radius) *
-	       largest_in_cluster(projector, from, reach) * choice->area_mm2;
+	const float radius = choice->radius * bound.scale;
+	return 1.001F * gz_stipple_density_most(bound.ink, facing) / (PI_F * radius * radius) *
+	       largest_in_cluster(projector, ball.from, ball.reach) * choice->area_mm2;
 }
 
 static void choose_in_clusters(void *user, size_t part, int worker)
@@ -303,21 +319,6 @@ static void choose_in_clusters(void *user, size_t part, int worker)
 	}
 }
 
-/* The half-spaces whose places are in the picture, by coordinates from the origin. */
-static void find_sides(const struct gz_stipple_projector *projector, float sides[4][4])
-{
-	const struct gz_plane *tone = projector->view->tone;
-	const float ends[2] = { (float)tone->width - 0.5F, (float)tone->height - 0.5F };
-	for (int side = 0; side < 4; side++) {
-		const float *row = projector->rows[side / 2];
-		const float sign = side % 2 ? -1 : 1, end = side % 2 ? ends[side / 2] : 0.5F;
-		for (int axis = 0; axis < 3; axis++)
-			sides[side][axis] = sign * row[axis] + (projector->orthographic ? 0 : end) *
-								       projector->rows[2][axis];
-		sides[side][3] = projector->orthographic ? end : 0;
-	}
-}
-
 static bool choice_make(const struct gz_stipple_points *points, const struct gz_stipple_view *view,
 			struct stipple_choice *out_choice)
 {
@@ -326,7 +327,6 @@ static bool choice_make(const struct gz_stipple_points *points, const struct gz_
 					 .area_mm2 = (float)points->area_mm2 };
 	if (!gz_stipple_view_valid(view) || !gz_stipple_projector_make(view, &choice.projector))
 		return false;
-	find_sides(&choice.projector, choice.sides);
 	*out_choice = choice;
 	return true;
 }
@@ -355,6 +355,15 @@ static void gather_discs(const struct stipple_choice *choice, struct gz_stipple_
 	}
 }
 
+/* The bounds of the tiles that all points cover. */
+static enum gz_result make_tiles(struct stipple_choice *choice, struct gz_workers *workers)
+{
+	struct gz_stipple_ball ball = { .reach = 1.0001F * choice->points->reach };
+	for (int axis = 0; axis < 3; axis++)
+		ball.from[axis] = choice->points->centre[axis] - choice->projector.origin[axis];
+	return gz_stipple_tiles_make(&choice->projector, &ball, workers, &choice->tiles);
+}
+
 enum gz_result gz_stipple_choose(const struct gz_stipple_points *points,
 				 const struct gz_stipple_view *view, struct gz_workers *workers,
 				 struct gz_stipple_discs *discs)
@@ -365,7 +374,8 @@ enum gz_result gz_stipple_choose(const struct gz_stipple_points *points,
 	if (points->count == 0)
 		return GZ_OK;
 	choice.counts = calloc(points->cluster_count, sizeof *choice.counts);
-	if (!choice.counts || reserve_discs(discs, points->count) != GZ_OK) {
+	if (!choice.counts || reserve_discs(discs, points->count) != GZ_OK ||
+	    make_tiles(&choice, workers) != GZ_OK) {
 		free(choice.counts);
 		return GZ_ERR_NO_MEM;
 	}
@@ -377,6 +387,7 @@ enum gz_result gz_stipple_choose(const struct gz_stipple_points *points,
 		for (size_t part = 0; part < parts; part++)
 			choose_in_clusters(&choice, part, 0);
 	gather_discs(&choice, discs);
+	gz_stipple_tiles_free(&choice.tiles);
 	free(choice.counts);
 	return GZ_OK;
 }

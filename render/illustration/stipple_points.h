@@ -41,7 +41,8 @@ struct gz_stipple_points {
 	float (*normals)[3]; /**< of their triangles, of length 1 */
 	uint32_t *ranks;     /**< rising within a cluster */
 	struct gz_stipple_cluster *clusters;
-	double area_mm2; /**< of the mesh */
+	float centre[3], reach; /**< of a ball around all points, mm */
+	double area_mm2;        /**< of the mesh */
 };
 
 /**

@@ -2,10 +2,33 @@
 
 #include "base/vector.h"
 
+/* The most that a surface falls away within a pixel, in edges of the pixel. Chosen: a slope of 83
+ * degrees, beyond which the planes tell little. */
+#define DEEPEST_PIXEL 8.0F
+
+/* Steeper surfaces have no more tolerance. Chosen likewise. */
+#define STEEPEST 8.0F
+
 static void copy_floats(const double from[3], double scale, float to[3])
 {
 	for (int i = 0; i < 3; i++)
 		to[i] = (float)(from[i] * scale);
+}
+
+/* In perspective the rays of the corners are the longest. */
+static void find_longest_ray(struct gz_stipple_projector *projector)
+{
+	const float ends[2] = { (float)projector->view->tone->width,
+				(float)projector->view->tone->height };
+	projector->ray_most = projector->direction_scale;
+	for (int corner = 0; corner < 4 && !projector->orthographic; corner++) {
+		float ray[3];
+		for (int axis = 0; axis < 3; axis++)
+			ray[axis] = projector->direction[axis] +
+				    (corner % 2 ? ends[0] : -1) * projector->dx[axis] +
+				    (corner / 2 ? ends[1] : -1) * projector->dy[axis];
+		projector->ray_most = fmaxf(projector->ray_most, sqrtf(gz_stipple_dot(ray, ray)));
+	}
 }
 
 bool gz_stipple_projector_make(const struct gz_stipple_view *view,
@@ -38,6 +61,9 @@ bool gz_stipple_projector_make(const struct gz_stipple_view *view,
 	projector.spread =
 		(float)(1 / (step * step * fabs(gz_dot3(across, view->rays->direction00))));
 	projector.pixel = (float)(step * fmax(gz_length3(dx), gz_length3(dy)));
+	find_longest_ray(&projector);
+	projector.tolerance_most = (float)view->tolerance_px * sqrtf(STEEPEST) +
+				   1.01F * DEEPEST_PIXEL * projector.ray_most; /* and rounding */
 	*out_projector = projector;
 	return true;
 }
@@ -70,7 +96,7 @@ static float tangent_depth(const struct gz_stipple_projector *projector, const f
 {
 	const float offset = centre->right * gz_stipple_dot(normal, projector->dx) +
 			     centre->down * gz_stipple_dot(normal, projector->dy);
-	const float limit = 8 * projector->pixel; /* of what a pixel is deep, in its edges */
+	const float limit = DEEPEST_PIXEL * projector->pixel;
 	if (projector->orthographic) {
 		const float deeper = -offset / spot->along;
 		return spot->depth + (fabsf(deeper) < limit ? deeper : copysignf(limit, deeper));
@@ -98,6 +124,6 @@ bool gz_stipple_spot_seen(const struct gz_stipple_projector *projector, const fl
 	const float depth = tangent_depth(projector, normal, spot, &centre);
 	const float edge = projector->pixel * (projector->orthographic ? 1 : spot->depth) *
 			   projector->world_per_mm;
-	const float steep = fminf(1 / fmaxf(spot->facing, 0.05F), 8);
+	const float steep = fminf(1 / fmaxf(spot->facing, 0.05F), STEEPEST);
 	return fabsf(seen - depth * per_depth) <= (float)view->tolerance_px * edge * sqrtf(steep);
 }

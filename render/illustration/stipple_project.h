@@ -24,6 +24,10 @@ struct gz_stipple_projector {
 	float spread; /**< |determinant of rows|: px² per mm², at depth 1 mm in perspective */
 	float pixel;  /**< edge of a pixel, mm, at depth 1 mm in perspective */
 	float direction_scale; /**< length of direction */
+	float ray_most;        /**< length of the longest ray of the picture */
+	/** How much deeper than what is seen a place may lie at most and be seen, as edges of a
+	 *  pixel at its depth: the tolerance, and how far a surface falls away within a pixel. */
+	float tolerance_most;
 	float world_per_mm;
 	float fronts; /**< 1: only what is seen from outside is drawn; 0: both sides */
 	bool orthographic;
@@ -34,6 +38,7 @@ struct gz_stipple_projector {
 struct gz_stipple_spot {
 	float x, y;        /**< px */
 	float depth;       /**< mm, as multiples of the ray's direction */
+	float distance_mm; /**< from the eye, in orthographic projection along the ray */
 	float facing;      /**< cosine of the angle between normal and view, [0, 1] */
 	float px2_per_mm2; /**< area in the picture for each area of the surface */
 	float along;       /**< normal times the way from the eye, mm; for gz_stipple_spot_seen() */
@@ -74,6 +79,7 @@ static inline bool gz_stipple_project(const struct gz_stipple_projector *project
 	out_spot->along = along;
 	const float way = projector->orthographic ? projector->direction_scale
 						  : sqrtf(gz_stipple_dot(from, from));
+	out_spot->distance_mm = projector->orthographic ? depth * way : way;
 	out_spot->facing = fabsf(along) / way;
 	out_spot->px2_per_mm2 = fabsf(along) * projector->spread / (w * w * w);
 	return true;
@@ -92,6 +98,17 @@ static inline float gz_stipple_ink_at(const struct gz_stipple_projector *project
 {
 	const float ink = 1 - gz_stipple_value_at(projector->view->tone, spot);
 	return !(ink > 0) ? 0 : ink > 1 ? 1 : ink;
+}
+
+/** Whether gz_stipple_spot_seen() may say yes: a quick look at the planes, which most hidden places
+ *  do not pass. */
+static inline bool gz_stipple_spot_near(const struct gz_stipple_projector *projector,
+					const struct gz_stipple_spot *spot)
+{
+	const float edge = projector->pixel * (projector->orthographic ? 1 : spot->depth);
+	const float seen = gz_stipple_value_at(projector->view->depth, spot);
+	const float away = fabsf(seen - spot->distance_mm * projector->world_per_mm);
+	return away <= edge * projector->world_per_mm * projector->tolerance_most + 1e-5F * seen;
 }
 
 /** Whether the planes say that a projected place is what is seen. */

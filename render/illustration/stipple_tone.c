@@ -1,5 +1,6 @@
 #include "render/illustration/stipple_tone.h"
 
+#include <math.h>
 #include <stddef.h>
 
 enum { RADII = 4, FACINGS = 5, TONES = 17 };
@@ -120,7 +121,18 @@ float gz_stipple_density(float ink, float facing, float radius)
 		      at_radius.share);
 }
 
-float gz_stipple_density_most(void)
+float gz_stipple_density_most(float ink, float facing)
 {
-	return densities[RADII - 1][0][TONES - 1]; /* large discs, at the flattest angle */
+	const struct table_place at = place_of_ink(ink);
+	float most = 0;
+	/* between two rows it is at most the denser one's at the upper end */
+	for (int i = 0; i + 1 < FACINGS && (i == 0 || facings[i] < facing); i++) {
+		float density = 0;
+		for (int k = 0; k < 2 * RADII; k++) {
+			const float *row = densities[k / 2][i + k % 2];
+			density = fmaxf(density, mix_of(row[at.low], row[at.low + 1], at.share));
+		}
+		most = fmaxf(most, density * fminf(facings[i + 1], facing));
+	}
+	return most;
 }

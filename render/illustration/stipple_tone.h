@@ -27,7 +27,8 @@
  */
 float gz_stipple_density(float ink, float facing, float radius);
 
-/** The greatest density of any tone, angle and radius. */
-float gz_stipple_density_most(void);
+/** No less than gz_stipple_density() times the cosine, for any radius and for all inks and cosines
+ * up to these. */
+float gz_stipple_density_most(float ink, float facing);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "base/workers.h"
 #include "drawn_meshes.h"
+#include "render/illustration/cached_points.h"
 #include "render/illustration/stipple_points.h"
 #include "render/illustration/stipple_sheet.h"
 #include "render/illustration/stipple_svg.h"
@@ -17,6 +18,7 @@
 enum { POINTS = 40000, EDGE = 200 };
 
 /* The points of both bodies, which the tests share. */
+static struct gz_mesh_points made_points[2];
 static struct gz_stipple_points points_of[2];
 
 static int make_points(void **state)
@@ -24,11 +26,9 @@ static int make_points(void **state)
 	(void)state;
 	for (int body = 0; body < 2; body++) {
 		struct gz_mesh mesh = drawn_mesh((enum drawn_body)body);
-		struct gz_mesh_points points;
-		if (gz_mesh_points_make(&mesh, POINTS, NULL, &points) != GZ_OK ||
-		    gz_stipple_points_make(&mesh, &points, &points_of[body]) != GZ_OK)
+		if (gz_mesh_points_make(&mesh, POINTS, NULL, &made_points[body]) != GZ_OK ||
+		    gz_stipple_points_make(&mesh, &made_points[body], &points_of[body]) != GZ_OK)
 			return -1;
-		gz_mesh_points_free(&points);
 		gz_mesh_free(&mesh);
 	}
 	return 0;
@@ -37,8 +37,10 @@ static int make_points(void **state)
 static int free_points(void **state)
 {
 	(void)state;
-	gz_stipple_points_free(&points_of[0]);
-	gz_stipple_points_free(&points_of[1]);
+	for (int body = 0; body < 2; body++) {
+		gz_mesh_points_free(&made_points[body]);
+		gz_stipple_points_free(&points_of[body]);
+	}
 	return 0;
 }
 
@@ -171,7 +173,7 @@ static size_t count_lost(const bool *before, const bool *after)
 /* Going nearer in small steps, no point of the middle of the board is lost. */
 static void check_nearing(enum gz_projection projection, double far, double near)
 {
-	enum { STEPS = 16 }; /* of 6 % more area each */
+	enum { STEPS = 8 }; /* of 12 % more area each */
 	bool *before = calloc(POINTS, 1), *after = calloc(POINTS, 1);
 	assert_true(before && after);
 	struct drawn_picture picture = { 0 };
@@ -216,17 +218,15 @@ static void turning_ball_shows_the_first_points_of_each_place(void **state)
 	/* From any side, of two points on one triangle the later one shows only if the first one
 	 * does: what is shown changes with the angle, and nothing else. */
 	struct gz_mesh mesh = drawn_mesh(DRAWN_BALL);
-	struct gz_mesh_points points;
-	assert_int_equal(gz_mesh_points_make(&mesh, POINTS, NULL, &points), GZ_OK);
 	bool *shown = calloc(POINTS, 1);
 	uint32_t *first_hidden = malloc(mesh.triangle_count * sizeof *first_hidden);
 	assert_true(shown && first_hidden);
 	const struct gz_stipple_points *drawn = &points_of[DRAWN_BALL];
 	struct drawn_picture picture = { 0 };
 	size_t compared = 0;
-	for (int turn = 0; turn < 8; turn++) {
+	for (int turn = 0; turn < 4; turn++) {
 		const struct gz_camera camera =
-			drawn_camera(GZ_PROJECTION_ORTHOGRAPHIC, 110, 3.0 * turn);
+			drawn_camera(GZ_PROJECTION_ORTHOGRAPHIC, 110, 7.0 * turn);
 		drawn_picture_make(DRAWN_BALL, &camera, EDGE, 0.7F, &picture);
 		mark_shown(DRAWN_BALL, &picture, shown);
 		memset(first_hidden, 0xff, mesh.triangle_count * sizeof *first_hidden);
@@ -236,7 +236,9 @@ static void turning_ball_shows_the_first_points_of_each_place(void **state)
 					(double)drawn->normals[i][2] * camera.eye[2] / 3 +
 					(double)drawn->normals[i][1] * camera.eye[1] / 3;
 				const uint32_t rank = drawn->ranks[i];
-				uint32_t *hidden = &first_hidden[points.points[rank].triangle];
+				uint32_t *hidden =
+					&first_hidden
+						[made_points[DRAWN_BALL].points[rank].triangle];
 				if (facing < 0.3) /* may be hidden behind the rim */
 					continue;
 				if (pass == 0 && !shown[i])
@@ -251,7 +253,6 @@ static void turning_ball_shows_the_first_points_of_each_place(void **state)
 	drawn_picture_free(&picture);
 	free(shown);
 	free(first_hidden);
-	gz_mesh_points_free(&points);
 	gz_mesh_free(&mesh);
 }
 
@@ -340,6 +341,78 @@ static void culling_loses_no_point(void **state)
 		assert_true(shown > 50);
 		gz_stipple_discs_free(&discs);
 	}
+	drawn_picture_free(&picture);
+}
+
+/* The tilt of both sides of a valley. */
+#define VALLEY_TILT_DEG 20.0
+
+/* A valley along y, whose points are one cluster: both sides rise from x = 0. */
+static struct gz_stipple_points valley_points(void)
+{
+	enum { VALLEY_POINTS = 200 };
+	static const uint32_t triangles[4][3] = {
+		{ 0, 1, 3 }, { 1, 4, 3 }, { 1, 2, 4 }, { 2, 5, 4 }
+	};
+	const float rise = (float)(20 * tan(VALLEY_TILT_DEG * 3.14159265 / 180));
+	struct gz_mesh mesh;
+	struct gz_mesh_points points;
+	struct gz_stipple_points valley;
+	assert_int_equal(gz_mesh_allocate(6, 4, &mesh), GZ_OK);
+	for (int i = 0; i < 6; i++) {
+		const int column = i % 3 - 1;
+		const float position[3] = { 20 * (float)column, 10 * (float)(i / 3) - 5,
+					    column == 0 ? 0 : rise };
+		memcpy(mesh.positions[i], position, sizeof position);
+		memcpy(mesh.normals[i], (const float[3]) { 0, 0, 1 }, sizeof mesh.normals[i]);
+	}
+	memcpy(mesh.triangles, triangles, sizeof triangles);
+	assert_int_equal(gz_mesh_points_make(&mesh, VALLEY_POINTS, NULL, &points), GZ_OK);
+	assert_int_equal(gz_stipple_points_make(&mesh, &points, &valley), GZ_OK);
+	assert_int_equal(valley.cluster_count, 1);
+	gz_mesh_points_free(&points);
+	gz_mesh_free(&mesh);
+	return valley;
+}
+
+/* How many discs a view has: one for each point that shows by itself. */
+static size_t count_discs(const struct gz_stipple_points *points,
+			  const struct gz_stipple_view *view)
+{
+	struct gz_stipple_discs discs = { 0 };
+	size_t shown = 0;
+	assert_int_equal(gz_stipple_choose(points, view, NULL, &discs), GZ_OK);
+	for (size_t i = 0; i < points->count; i++)
+		shown += gz_stipple_shows(points, view, i);
+	assert_int_equal(discs.count, shown);
+	gz_stipple_discs_free(&discs);
+	return shown;
+}
+
+static void culling_knows_how_far_a_cluster_reaches(void **state)
+{
+	(void)state;
+	/* The eye is a little above the plane of the left side, and below a parallel plane through
+	 * the middle of the cluster: seen from there, the left side would be turned away. Nothing
+	 * is hidden, so that this alone decides. */
+	enum { SMALL = 40 };
+	struct gz_stipple_points points = valley_points();
+	size_t shown = 0;
+	struct drawn_picture picture = { 0 };
+	struct gz_camera camera = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 100, 0);
+	drawn_picture_make(DRAWN_BOARD, &camera, SMALL, 0, &picture);
+	picture.view.ids = NULL;
+	picture.view.tolerance_px = 1e6;
+	picture.view.size_px = 0.25;
+	for (int away = 30; away <= 120; away += 15) {
+		const double tilt = VALLEY_TILT_DEG * 3.14159265 / 180;
+		camera.eye[0] = away / 100.0;
+		camera.eye[2] = (2 - away * sin(tilt)) / cos(tilt) / 100;
+		assert_int_equal(gz_camera_rays(&camera, SMALL, SMALL, &picture.rays), GZ_OK);
+		shown += count_discs(&points, &picture.view);
+	}
+	assert_true(shown > 10);
+	gz_stipple_points_free(&points);
 	drawn_picture_free(&picture);
 }
 
@@ -469,10 +542,56 @@ static void darker_tones_ask_for_denser_discs(void **state)
 				const float density = gz_stipple_density(ink, facing, radius);
 				assert_true(density <=
 					    gz_stipple_density(ink + 0.01F, facing, radius));
-				assert_true(density <= gz_stipple_density_most());
+				const float most = gz_stipple_density_most(ink, facing);
+				assert_true(density * facing <= most * 1.0001F);
+				assert_true(most <= 1.5F * gz_stipple_density(ink, 1, 8) + 1e-6F);
 				/* discs that do not overlap cover their area, all others less */
 				assert_true(density >= ink - 0.021F);
 			}
+}
+
+/* The file of the points of a folder; the second time they are read from it, and a file of another
+ * mesh is not used. */
+static void points_are_kept_beside_the_input(void **state)
+{
+	(void)state;
+	char folder[] = "/tmp/gazecast_points_XXXXXX", input[64], kept[80];
+	struct gz_mesh mesh = drawn_mesh(DRAWN_BALL);
+	struct gz_mesh_points made, read, other;
+	assert_non_null(mkdtemp(folder));
+	snprintf(input, sizeof input, "%s/ball.ply", folder);
+	snprintf(kept, sizeof kept, "%s.points", input);
+	const struct gz_mesh_cache_place place = { input, "points" };
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &made), GZ_OK);
+	assert_int_equal(access(kept, R_OK), 0);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
+	assert_int_equal(read.count, 500);
+	assert_memory_equal(read.points, made.points, 500 * sizeof *made.points);
+	assert_true(read.area_mm2 == made.area_mm2);
+	gz_mesh_points_free(&read);
+	/* a file that belongs to the key is believed: another area shows that it was read */
+	struct gz_mesh_key key;
+	float floats[3 * 500] = { 0 }, area[3] = { 7, 0.5F, 0 };
+	const struct gz_mesh_cache_array arrays[2] = { { floats, 3 * 500 }, { area, 3 } };
+	assert_int_equal(gz_mesh_key_make(&mesh, "mesh points 1, 500", &key), GZ_OK);
+	assert_int_equal(gz_mesh_cache_store(&place, &key, arrays, 2, NULL), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
+	assert_true(read.area_mm2 == 7.5);
+	gz_mesh_points_free(&read);
+	/* but a triangle that the mesh lacks is not, and another mesh has another key */
+	floats[3] = (float)mesh.triangle_count;
+	assert_int_equal(gz_mesh_cache_store(&place, &key, arrays, 2, NULL), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
+	assert_memory_equal(read.points, made.points, 500 * sizeof *made.points);
+	mesh.positions[0][0] += 1;
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &other), GZ_OK);
+	assert_true(other.area_mm2 != made.area_mm2);
+	gz_mesh_points_free(&read);
+	gz_mesh_points_free(&made);
+	gz_mesh_points_free(&other);
+	gz_mesh_free(&mesh);
+	unlink(kept);
+	rmdir(folder);
 }
 
 static void print_is_an_svg_in_millimetres(void **state)
@@ -525,12 +644,14 @@ TEST_SUITE(stipple)
 		cmocka_unit_test(board_from_behind_shows_only_with_backs),
 		cmocka_unit_test(points_of_other_objects_are_not_drawn),
 		cmocka_unit_test(culling_loses_no_point),
+		cmocka_unit_test(culling_knows_how_far_a_cluster_reaches),
 		cmocka_unit_test(drawing_is_the_same_for_any_number_of_threads),
 		cmocka_unit_test(discs_grow_away_from_the_gaze_and_tone_stays),
 		cmocka_unit_test(view_out_of_range_is_refused),
 		cmocka_unit_test(disc_adds_as_much_ink_as_its_area),
 		cmocka_unit_test(marks_at_the_border_stay_on_the_sheet),
 		cmocka_unit_test(darker_tones_ask_for_denser_discs),
+		cmocka_unit_test(points_are_kept_beside_the_input),
 		cmocka_unit_test(print_is_an_svg_in_millimetres),
 		cmocka_unit_test(print_that_cannot_be_written_is_refused),
 	};
