@@ -58,7 +58,8 @@ struct gz_hatch_strokes {
 /**
  * Directions along which illustrators hatch: that of the least curvature, along a tube and across
  * the bend of a ridge. Where both curvatures are alike there is none; directions of other vertices
- * spread there.
+ * spread there. So they do where directions contradict each other, from about four times as far: on
+ * noisy scans strokes run along the form, not along the noise.
  *
  * @param curvatures  of each vertex of @p mesh, by gz_mesh_curvatures()
  * @param passes      how far directions spread and are smoothed, in edges, 0 to 1000

@@ -8,6 +8,7 @@
 #include "base/workers.h"
 #include "drawn_meshes.h"
 #include "render/illustration/hatch_lines.h"
+#include "render/mesh/point_grid.h"
 
 enum { POINTS = 20000, EDGE = 200 };
 
@@ -353,6 +354,31 @@ static void directions_of_a_tube_run_along_it(void **state)
 	free(directions);
 }
 
+static void directions_of_noise_are_those_around_it(void **state)
+{
+	(void)state;
+	/* A tube along y of which two vertices of three bend at random: noise cancels out. */
+	const struct gz_mesh *mesh = &meshes[DRAWN_BOARD];
+	struct gz_curvature *curvatures = calloc(mesh->vertex_count, sizeof *curvatures);
+	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
+	assert_true(curvatures && directions);
+	for (size_t i = 0; i < mesh->vertex_count; i++) {
+		const double noise = (double)(gz_mixed_bits(5, i) >> 11) * 0x1p-53;
+		const double angle = gz_mixed_bits(6, i) % 3 ? 3.14159265 * noise : 0;
+		curvatures[i] = (struct gz_curvature) {
+			0.5F, 0, { (float)cos(angle), (float)sin(angle), 0 }
+		};
+	}
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 60, directions), GZ_OK);
+	double least = 1;
+	for (size_t i = 0; i < mesh->vertex_count; i++)
+		least = fmin(least, fabs((double)directions[i][1]));
+	if (least < 0.96)
+		fail_msg("a direction is %.1f degrees off", acos(least) * 180 / 3.14159265);
+	free(curvatures);
+	free(directions);
+}
+
 static void mesh_without_directions_has_no_strokes(void **state)
 {
 	(void)state;
@@ -390,6 +416,7 @@ TEST_SUITE(hatch)
 		cmocka_unit_test(hidden_strokes_do_not_shine_through),
 		cmocka_unit_test(hatching_is_the_same_for_any_number_of_threads),
 		cmocka_unit_test(directions_of_a_tube_run_along_it),
+		cmocka_unit_test(directions_of_noise_are_those_around_it),
 		cmocka_unit_test(mesh_without_directions_has_no_strokes),
 	};
 	return cmocka_run_group_tests(tests, make_strokes, free_strokes);
