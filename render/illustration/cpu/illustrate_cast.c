@@ -283,8 +283,10 @@ void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
 {
 	struct illustrate_packet packet;
 	struct shading_lanes lanes;
+	struct gz_embree_query query;
 	aim_packet(cast, tile, &packet);
-	gz_embree_intersect(packet.valid, cast->tree, &packet.hit);
+	gz_embree_query_make(true, &query);
+	gz_embree_intersect16(packet.valid, cast->tree, &query, &packet.hit);
 	if (!any_is_met(&packet.hit)) {
 		fill_empty_hits(out_hits);
 		return;

@@ -63,7 +63,7 @@ struct gz_surface_cast {
 struct gz_surface_tile {
 	float x[GZ_SURFACE_RAYS], y[GZ_SURFACE_RAYS]; /**< pixels of its rays */
 	uint32_t active;                              /**< bit i: cast ray i */
-	bool coherent_shadows; /**< shadow rays lie close together: a hint that changes nothing */
+	bool coherent; /**< rays lie close together: a hint that changes nothing but the time */
 };
 
 /** What the rays of a tile found; valid for active rays. */

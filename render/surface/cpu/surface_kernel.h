@@ -11,6 +11,7 @@
 #include "render/surface/cpu/surface_field.h"
 #include "render/surface/cpu/surface_glass.h"
 #include "render/surface/cpu/surface_packet.h"
+#include "render/surface/cpu/surface_trace.h"
 
 /*
  * Lift places from where the lanes of the mask have met a mesh to where the planes of the corners'
@@ -245,16 +246,16 @@ SIMD void colour_lanes(const struct gz_surface_cast *cast, int first, const stru
 #define EACH_REGISTER for (int first = 0; first < GZ_SURFACE_RAYS; first += SIMD_LANES)
 
 /* Find what the rays of a packet meet first. */
-SIMD void meet_surfaces(const struct gz_surface_cast *cast, struct packet *packet)
+SIMD void meet_surfaces(const struct gz_surface_cast *cast, bool coherent, struct packet *packet)
 {
-	gz_embree_intersect(packet->valid, cast->tree, &packet->hit);
+	trace_first(cast, coherent, packet);
 	if (cast->field.on)
 		EACH_REGISTER meet_field(cast, first, packet);
 }
 
 /* Follow the rays of a packet through glass, after their first triangles have been found. */
-SIMD void follow_through_glass(const struct gz_surface_cast *cast, struct packet *packet,
-			       struct gz_surface_hits *out_hits)
+SIMD void follow_through_glass(const struct gz_surface_cast *cast, bool coherent,
+			       struct packet *packet, struct gz_surface_hits *out_hits)
 {
 	struct glass glass;
 	EACH_REGISTER
@@ -267,7 +268,7 @@ SIMD void follow_through_glass(const struct gz_surface_cast *cast, struct packet
 		EACH_REGISTER any |= bend_hits(cast, first, packet, &glass);
 		if (!any || met + 1 == cast->frame.bounces)
 			break;
-		meet_surfaces(cast, packet);
+		meet_surfaces(cast, coherent, packet);
 	}
 	EACH_REGISTER
 	{
@@ -309,7 +310,7 @@ static void find_lit_places(const struct gz_surface_cast *cast,
 {
 	struct packet packet;
 	EACH_REGISTER aim_from_places(cast, places, first, &packet);
-	gz_embree_occluded(packet.valid, cast->tree, true, &packet.shadow);
+	trace_shadows(cast, true, &packet);
 	if (cast->field.on)
 		EACH_REGISTER shade_by_field(cast, first, &packet);
 	EACH_REGISTER
@@ -332,15 +333,14 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 		if (follows_light(cast))
 			begin_shadows(cast, first, &packet);
 	}
-	meet_surfaces(cast, &packet);
+	meet_surfaces(cast, tile->coherent, &packet);
 	if (cast->frame.bounces) {
-		follow_through_glass(cast, &packet, out_hits);
+		follow_through_glass(cast, tile->coherent, &packet, out_hits);
 		return;
 	}
 	EACH_REGISTER any_lit |= light_hits(cast, first, &packet, out_hits);
 	if (cast->frame.shadows && any_lit) {
-		gz_embree_occluded(packet.valid, cast->tree, tile->coherent_shadows,
-				   &packet.shadow);
+		trace_shadows(cast, tile->coherent, &packet);
 		if (cast->field.on)
 			EACH_REGISTER shade_by_field(cast, first, &packet);
 		EACH_REGISTER darken_lanes(cast, first, &packet);
