@@ -35,14 +35,31 @@ static bool some_technique_has(const char *backend)
 	return false;
 }
 
-static enum gz_result check_backends(const char *backends, const struct gz_log *log)
+static bool is_a_technique(const char *name)
+{
+	for (size_t i = 0; gz_techniques[i]; i++)
+		if (strcmp(gz_techniques[i]->name, name) == 0)
+			return gz_techniques[i]->shows & GZ_OBJECT_VOLUME;
+	return false;
+}
+
+static bool is_an_effect(const char *name)
+{
+	for (size_t i = 0; i < GZ_EFFECT_COUNT; i++)
+		if (strcmp(gz_effects[i].name, name) == 0)
+			return true;
+	return false;
+}
+
+/* Check each name of a list. */
+static enum gz_result check_names(const char *list, bool (*is_known)(const char *name),
+				  const char *what, const struct gz_log *log)
 {
 	char name[GZ_NAME_SIZE];
-	const char *rest = backends[0] ? backends : NULL;
+	const char *rest = list[0] ? list : NULL;
 	while (gz_list_next(&rest, name, sizeof name))
-		if (!some_technique_has(name)) {
-			gz_err(log, "'%s': no technique has this backend; there are cpu and gl",
-			       name);
+		if (!is_known(name)) {
+			gz_err(log, "'%s': %s", name, what);
 			return GZ_ERR_INVAL;
 		}
 	return GZ_OK;
@@ -88,7 +105,19 @@ enum gz_result gz_comparison_check(const struct gz_comparison_request *request,
 				   const struct gz_log *log)
 {
 	struct gz_comparison comparison = { 0 };
-	enum gz_result result = check_backends(request->backends, log);
+	enum gz_result result =
+		check_names(request->backends, some_technique_has,
+			    "no technique has this backend; there are cpu and gl", log);
+	if (result == GZ_OK)
+		result = check_names(request->techniques, is_a_technique,
+				     "no technique of volumes; there are raycast, isosurface and "
+				     "slices",
+				     log);
+	if (result == GZ_OK)
+		result = check_names(request->effects, is_an_effect,
+				     "no effect; there are none, reflection, shadow, both and "
+				     "glass",
+				     log);
 	if (result == GZ_OK)
 		result = list_methods(request->methods, log, &comparison);
 	gz_comparison_free(&comparison);
@@ -305,7 +334,7 @@ static enum gz_result compare_scene(struct running *running, size_t index)
 		.display = &display,
 		.rays = &rays,
 	};
-	result = gz_comparison_list_make(&stage, running->request->backends, &list);
+	result = gz_comparison_list_make(&stage, running->request, &list);
 	if (result == GZ_OK)
 		result = measure_scene(running, index, &stage, &list);
 	gz_comparison_list_free(&list);

@@ -20,15 +20,17 @@
 struct gz_comparison_request {
 	const char *const *scenes; /**< paths */
 	size_t scene_count;
-	const char *methods;  /**< beside standard: "acuity", as for gz_study_request */
-	const char *backends; /**< "cpu,gl"; empty: all that run here */
-	int width, height;    /**< px */
-	int frames, warm_up;  /**< of each method; warm_up at least 1 */
-	double turn_deg;      /**< that the camera turns from frame to frame */
-	double isovalue;      /**< of surfaces; NaN: gz_comparison_isovalue() */
-	bool errors;          /**< compare with the converged ray cast */
-	const char *cache;    /**< folder of converged pictures; NULL: they are not kept */
-	const char *pictures; /**< folder for a picture of each series; NULL: none */
+	const char *methods;    /**< beside standard: "acuity", as for gz_study_request */
+	const char *backends;   /**< "cpu,gl"; empty: all that run here */
+	const char *techniques; /**< "raycast,slices"; empty: all */
+	const char *effects;    /**< "none,shadow"; empty: all */
+	int width, height;      /**< px */
+	int frames, warm_up;    /**< of each method; warm_up at least 1 */
+	double turn_deg;        /**< that the camera turns from frame to frame */
+	double isovalue;        /**< of surfaces; NaN: gz_comparison_isovalue() */
+	bool errors;            /**< compare with the converged ray cast */
+	const char *cache;      /**< folder of converged pictures; NULL: they are not kept */
+	const char *pictures;   /**< folder for a picture of each series; NULL: none */
 	const char *program, *commit;
 };
 
@@ -49,6 +51,10 @@ enum gz_comparison_reference {
 	/** The converged ray cast of matter that is opaque from the isovalue on: what an opaque
 	 *  surface should look like. */
 	GZ_REFERENCE_SURFACE,
+	/** The surface where rays meet it in the voxels, with the same effect: for hard shadows and
+	 *  glass, which translucent matter has not. */
+	GZ_REFERENCE_VOXELS,
+	GZ_REFERENCE_COUNT
 };
 
 /** One method of one series. */

@@ -15,6 +15,8 @@ enum { PROBE_PX = 96 };
 static const int slice_counts[] = { 64, 128, 512 };
 static const char slices_key[] = "slices.count";
 
+const char gz_comparison_reference_backend[] = "cpu";
+
 enum gz_result gz_comparison_open(const struct gz_comparison_stage *stage,
 				  const struct gz_technique *technique, const char *backend,
 				  const struct gz_log *log, struct gz_picture_maker **out_maker)
@@ -85,6 +87,7 @@ static enum gz_result add_counts(struct gz_comparison_list *list,
 /* Small pictures of the effects so far. */
 struct probe {
 	const struct gz_comparison_stage *stage;
+	const char *effects; /* asked for; empty: all */
 	struct gz_picture_maker *maker;
 	struct gz_image images[GZ_EFFECT_COUNT];
 	bool drawn[GZ_EFFECT_COUNT];
@@ -119,6 +122,17 @@ static bool changes_something(const struct probe *probe, size_t effect)
 	return true;
 }
 
+/* Whether a list names something. An empty one names everything. */
+static bool is_asked_for(const char *list, const char *wanted)
+{
+	char name[GZ_NAME_SIZE];
+	const char *rest = list[0] ? list : NULL;
+	while (gz_list_next(&rest, name, sizeof name))
+		if (strcmp(name, wanted) == 0)
+			return true;
+	return !list[0];
+}
+
 static enum gz_result list_effects(struct probe *probe, struct gz_comparison_series *series,
 				   struct gz_comparison_list *list)
 {
@@ -136,31 +150,21 @@ static enum gz_result list_effects(struct probe *probe, struct gz_comparison_ser
 			.why = i == 0 ? GZ_ABSENT_BACKEND : GZ_ABSENT_EFFECT,
 		};
 		const bool drawn = draw_probe(probe, i, &series->rays);
-		if (drawn && changes_something(probe, i))
-			result = add_counts(list, series);
-		else
-			result = add_gap(list, &gap);
+		const bool shows = drawn && changes_something(probe, i);
+		if (is_asked_for(probe->effects, gz_effects[i].name))
+			result = shows ? add_counts(list, series) : add_gap(list, &gap);
 		if (!drawn && i == 0) /* not even that: this backend cannot show the volume */
 			break;
 	}
 	return result;
 }
 
-static bool is_listed(const char *backends, const char *backend)
-{
-	char name[GZ_NAME_SIZE];
-	while (gz_list_next(&backends, name, sizeof name))
-		if (strcmp(name, backend) == 0)
-			return true;
-	return false;
-}
-
 static enum gz_result list_backend(const struct gz_comparison_stage *stage,
 				   const struct gz_technique *technique, const char *backend,
-				   struct gz_comparison_list *list)
+				   const char *effects, struct gz_comparison_list *list)
 {
 	struct gz_comparison_series series = { .technique = technique, .backend = backend };
-	struct probe probe = { .stage = stage };
+	struct probe probe = { .stage = stage, .effects = effects };
 	/* Without a log: what does not run here is no fault, and the list of gaps tells it. */
 	enum gz_result result = gz_comparison_open(stage, technique, backend, NULL, &probe.maker);
 	if (result != GZ_OK) {
@@ -177,20 +181,41 @@ static enum gz_result list_backend(const struct gz_comparison_stage *stage,
 	return result;
 }
 
-enum gz_result gz_comparison_list_make(const struct gz_comparison_stage *stage,
-				       const char *backends, struct gz_comparison_list *out_list)
+/* Find which effects converged pictures can have, whatever is asked for. */
+static enum gz_result find_converged_effects(const struct gz_comparison_stage *stage,
+					     bool out_has[GZ_EFFECT_COUNT])
 {
 	struct gz_comparison_list list = { 0 };
+	const enum gz_result result =
+		list_backend(stage, gz_techniques[0], gz_comparison_reference_backend, "", &list);
+	for (size_t i = 0; i < list.count; i++)
+		out_has[list.series[i].effect] = true;
+	gz_comparison_list_free(&list);
+	return result;
+}
+
+static enum gz_result list_technique(const struct gz_comparison_stage *stage,
+				     const struct gz_comparison_request *request,
+				     const struct gz_technique *technique,
+				     struct gz_comparison_list *list)
+{
 	enum gz_result result = GZ_OK;
-	for (size_t i = 0; gz_techniques[i] && result == GZ_OK; i++) {
-		const struct gz_technique *technique = gz_techniques[i];
-		if (!(technique->shows & GZ_OBJECT_VOLUME))
-			continue;
-		for (const char *const *name = technique->backends; *name && result == GZ_OK;
-		     name++)
-			if (!backends[0] || is_listed(backends, *name))
-				result = list_backend(stage, technique, *name, &list);
-	}
+	for (const char *const *name = technique->backends; *name && result == GZ_OK; name++)
+		if (is_asked_for(request->backends, *name))
+			result = list_backend(stage, technique, *name, request->effects, list);
+	return result;
+}
+
+enum gz_result gz_comparison_list_make(const struct gz_comparison_stage *stage,
+				       const struct gz_comparison_request *request,
+				       struct gz_comparison_list *out_list)
+{
+	struct gz_comparison_list list = { 0 };
+	enum gz_result result = find_converged_effects(stage, list.converged_has);
+	for (size_t i = 0; gz_techniques[i] && result == GZ_OK; i++)
+		if (gz_techniques[i]->shows & GZ_OBJECT_VOLUME &&
+		    is_asked_for(request->techniques, gz_techniques[i]->name))
+			result = list_technique(stage, request, gz_techniques[i], &list);
 	if (result == GZ_OK)
 		*out_list = list;
 	else

@@ -35,7 +35,12 @@ struct gz_comparison_list {
 	size_t count;
 	struct gz_comparison_gap *gaps;
 	size_t gap_count;
+	/** Whether the ray caster of converged pictures has an effect, by effect. */
+	bool converged_has[GZ_EFFECT_COUNT];
 };
+
+/** The backend of converged pictures. */
+extern const char gz_comparison_reference_backend[];
 
 /** Make a picture maker that shows the stage's volume. @return its failures; logged */
 enum gz_result gz_comparison_open(const struct gz_comparison_stage *stage,
@@ -44,14 +49,13 @@ enum gz_result gz_comparison_open(const struct gz_comparison_stage *stage,
 
 /**
  * List the series of a scene: each technique that shows volumes, each of its backends that runs
- * here, each effect that changes its picture, and 64, 128 and 512 slices if it has any. What is
- * missing is listed too. Makers are not opened.
- *
- * @param backends  as in struct gz_comparison_request
+ * here, each effect that changes its picture, and 64, 128 and 512 slices if it has any, as far as
+ * they are asked for. What is missing is listed too. Makers are not opened.
  * @retval GZ_ERR_NO_MEM  out of memory
  */
 enum gz_result gz_comparison_list_make(const struct gz_comparison_stage *stage,
-				       const char *backends, struct gz_comparison_list *out_list);
+				       const struct gz_comparison_request *request,
+				       struct gz_comparison_list *out_list);
 
 /** Free what it holds, makers too, and zero it. */
 void gz_comparison_list_free(struct gz_comparison_list *list);

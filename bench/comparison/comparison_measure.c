@@ -10,9 +10,6 @@
 
 #define GZ_LOG_MODULE "techniques"
 
-/* The technique and the backend of references: that of the converged picture (errors.h). */
-#define REFERENCE_BACKEND "cpu"
-
 /* Where the eye looks. */
 static const struct gz_point middle = { 0.5F, 0.5F };
 
@@ -142,11 +139,10 @@ enum gz_result gz_comparison_time(const struct gz_comparison_job *job)
 
 /* ---- errors ---- */
 
-/* Pictures and maps of a scene. Two references: by the scene's transfer function, and of opaque
- * matter. */
+/* Pictures and maps of a scene. */
 struct comparing {
 	const struct gz_comparison_job *job;
-	struct gz_picture_maker *makers[2];
+	struct gz_picture_maker *makers[GZ_REFERENCE_COUNT]; /* of references */
 	struct gz_image test, standard, converged, half_step;
 	/* Which reference converged is. */
 	enum gz_comparison_reference reference;
@@ -155,21 +151,8 @@ struct comparing {
 	struct gz_error_maps maps;
 };
 
-/* Whether the ray caster of references has an effect: whether the list has such a series. */
-static bool reference_has(const struct gz_comparison_list *list, size_t effect)
-{
-	if (effect == 0)
-		return true;
-	for (size_t i = 0; i < list->count; i++)
-		if (list->series[i].technique == gz_techniques[0] &&
-		    strcmp(list->series[i].backend, REFERENCE_BACKEND) == 0 &&
-		    list->series[i].effect == effect)
-			return true;
-	return false;
-}
-
-/* Surfaces are opaque matter, lit by its gradient. The ray caster has neither hard shadows nor
- * glass, so surfaces with these have no reference. */
+/* Surfaces are opaque matter, lit by its gradient. Matter has neither hard shadows nor glass: for
+ * these, rays find the surface in the voxels. */
 static enum gz_comparison_reference reference_of(const struct gz_comparison_job *job,
 						 const struct gz_comparison_series *series)
 {
@@ -178,9 +161,9 @@ static enum gz_comparison_reference reference_of(const struct gz_comparison_job 
 	if (series->technique->sharing == GZ_SHARES_AS_OPAQUE)
 		return series->rays.surface.shadows ||
 				       series->rays.surface.material != GZ_MATERIAL_MATTE
-			       ? GZ_REFERENCE_NONE
+			       ? GZ_REFERENCE_VOXELS
 			       : GZ_REFERENCE_SURFACE;
-	return reference_has(job->list, series->effect) ? GZ_REFERENCE_VOLUME : GZ_REFERENCE_NONE;
+	return job->list->converged_has[series->effect] ? GZ_REFERENCE_VOLUME : GZ_REFERENCE_NONE;
 }
 
 static struct gz_ray_params rays_of_reference(const struct gz_comparison_series *series,
@@ -195,33 +178,56 @@ static struct gz_ray_params rays_of_reference(const struct gz_comparison_series 
 	return rays;
 }
 
-static enum gz_result open_reference(struct comparing *comparing, enum gz_comparison_reference kind)
+/* Open the maker of a reference. Surfaces in voxels are of the series' own technique. */
+static enum gz_result open_reference(struct comparing *comparing,
+				     const struct gz_comparison_series *series,
+				     enum gz_comparison_reference kind)
 {
 	struct gz_comparison_stage stage = *comparing->job->stage;
-	struct gz_picture_maker **maker = &comparing->makers[kind == GZ_REFERENCE_SURFACE];
+	struct gz_picture_maker **maker = &comparing->makers[kind];
 	if (*maker)
 		return GZ_OK;
 	if (kind == GZ_REFERENCE_SURFACE)
 		stage.transfer = comparing->job->surface;
-	return gz_comparison_open(&stage, gz_techniques[0], REFERENCE_BACKEND, comparing->job->log,
-				  maker);
+	return gz_comparison_open(
+		&stage, kind == GZ_REFERENCE_VOXELS ? series->technique : gz_techniques[0],
+		gz_comparison_reference_backend, comparing->job->log, maker);
 }
 
-static enum gz_result find_converged_picture(struct comparing *comparing,
-					     const struct gz_comparison_series *series,
-					     enum gz_comparison_reference kind)
+/* Make the picture of a surface in the voxels: it needs no smaller step, because rays find where
+ * they cross it. */
+static enum gz_result make_voxel_picture(struct comparing *comparing,
+					 const struct gz_comparison_series *series)
 {
 	const struct gz_comparison_job *job = comparing->job;
-	const bool surface = kind == GZ_REFERENCE_SURFACE;
-	if (comparing->reference == kind && comparing->effect == series->effect)
-		return GZ_OK;
-	enum gz_result result = open_reference(comparing, kind);
-	if (result != GZ_OK)
-		return result;
+	const struct gz_foveation foveation = gz_foveation_full();
+	struct gz_ray_params rays = series->rays;
+	struct gz_image *made;
+	const struct gz_picture_request request = {
+		.camera = job->stage->camera,
+		.settings = &rays,
+		.foveation = &foveation,
+		.display = job->stage->display,
+		.focus = gz_focus_at(middle),
+		.width = job->request->width,
+		.height = job->request->height,
+		.image = &comparing->converged,
+	};
+	rays.surface.source = GZ_SURFACE_VOXELS;
+	return gz_picture_make(comparing->makers[GZ_REFERENCE_VOXELS], &request, &made, NULL);
+}
+
+/* Make or find a converged ray cast. */
+static enum gz_result get_converged_picture(struct comparing *comparing,
+					    const struct gz_comparison_series *series,
+					    enum gz_comparison_reference kind)
+{
+	const struct gz_comparison_job *job = comparing->job;
 	const struct gz_ray_params rays = rays_of_reference(series, kind);
 	const struct gz_reference_request request = {
-		.maker = comparing->makers[surface],
-		.data_hash = surface ? job->surface_hash : job->scene->data_hash,
+		.maker = comparing->makers[kind],
+		.data_hash =
+			kind == GZ_REFERENCE_SURFACE ? job->surface_hash : job->scene->data_hash,
 		.program = job->program,
 		.camera = job->stage->camera,
 		.rays = &rays,
@@ -232,14 +238,29 @@ static enum gz_result find_converged_picture(struct comparing *comparing,
 	};
 	double db;
 	bool made;
+	const enum gz_result result = gz_reference_get(&request, job->log, &comparing->converged,
+						       &comparing->half_step, &db, &made);
+	if (result == GZ_OK) /* fmin passes over NaN */
+		job->scene->reference_db = fmin(job->scene->reference_db, db);
+	return result;
+}
+
+static enum gz_result find_converged_picture(struct comparing *comparing,
+					     const struct gz_comparison_series *series,
+					     enum gz_comparison_reference kind)
+{
+	if (comparing->reference == kind && comparing->effect == series->effect)
+		return GZ_OK;
 	comparing->reference = GZ_REFERENCE_NONE;
-	result = gz_reference_get(&request, job->log, &comparing->converged, &comparing->half_step,
-				  &db, &made);
+	enum gz_result result = open_reference(comparing, series, kind);
+	if (result == GZ_OK)
+		result = kind == GZ_REFERENCE_VOXELS
+				 ? make_voxel_picture(comparing, series)
+				 : get_converged_picture(comparing, series, kind);
 	if (result != GZ_OK)
 		return result;
 	comparing->reference = kind;
 	comparing->effect = series->effect;
-	job->scene->reference_db = fmin(job->scene->reference_db, db); /* fmin passes over NaN */
 	return GZ_OK;
 }
 
@@ -296,9 +317,13 @@ static enum gz_result compare_series(struct comparing *comparing, size_t index)
 {
 	const struct gz_comparison_job *job = comparing->job;
 	const struct gz_comparison_series *series = &job->list->series[index];
-	const enum gz_comparison_reference kind = reference_of(job, series);
+	enum gz_comparison_reference kind = reference_of(job, series);
 	enum gz_result result =
 		kind == GZ_REFERENCE_NONE ? GZ_OK : find_converged_picture(comparing, series, kind);
+	if (kind == GZ_REFERENCE_VOXELS && result == GZ_ERR_UNSUPPORTED) { /* built without rays */
+		kind = GZ_REFERENCE_NONE;
+		result = GZ_OK;
+	}
 	for (size_t method = 0; method < job->method_count && result == GZ_OK; method++) {
 		job->rows[index * job->method_count + method].reference = kind;
 		result = compare_method(comparing, index, method);
@@ -317,7 +342,7 @@ enum gz_result gz_comparison_compare(const struct gz_comparison_job *job)
 				      job->request->width, job->request->height, job->workers);
 	for (size_t i = 0; i < job->list->count && result == GZ_OK; i++)
 		result = compare_series(comparing, i);
-	for (int i = 0; i < 2; i++)
+	for (int i = 0; i < GZ_REFERENCE_COUNT; i++)
 		gz_picture_maker_destroy(&comparing->makers[i]);
 	gz_image_free(&comparing->test);
 	gz_image_free(&comparing->standard);

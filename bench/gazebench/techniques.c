@@ -22,7 +22,7 @@ struct settings {
 	char out[GZ_PATH_SIZE];
 	char methods[LIST_SIZE];
 	int size[2];
-	char backend[LIST_SIZE];
+	char backend[LIST_SIZE], techniques[LIST_SIZE], effects[LIST_SIZE];
 	int frames, warm_up;
 	double turn_deg;
 	char isovalue[GZ_NAME_SIZE];
@@ -60,12 +60,25 @@ static const struct gz_option options[] = {
 	  .max = LIST_SIZE,
 	  .preset = "",
 	  .help = "backends, separated by commas (default: all that run here)" },
+	{ .key = "techniques",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(techniques),
+	  .max = LIST_SIZE,
+	  .preset = "",
+	  .help = "techniques, separated by commas (default: all)" },
+	{ .key = "effects",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(effects),
+	  .max = LIST_SIZE,
+	  .preset = "",
+	  .help = "effects, separated by commas: none, reflection, shadow, both, glass (default: "
+		  "all)" },
 	{ .key = "frames",
 	  .type = GZ_OPTION_INT,
 	  .offset = AT(frames),
 	  .min = 1,
 	  .max = GZ_STUDY_FRAMES_MAX,
-	  .preset = "24",
+	  .preset = "6",
 	  .help = "counted frames of each method of each series" },
 	{ .key = "warm-up",
 	  .type = GZ_OPTION_INT,
@@ -79,7 +92,7 @@ static const struct gz_option options[] = {
 	  .offset = AT(turn_deg),
 	  .min = -180,
 	  .max = 180,
-	  .preset = "15",
+	  .preset = "60",
 	  .help = "degrees that the camera turns a frame" },
 	{ .key = "isovalue",
 	  .type = GZ_OPTION_STRING,
@@ -176,6 +189,8 @@ static int run_techniques(int argc, char *const *argv, const struct gz_log *log)
 		.scene_count = (size_t)scenes.count,
 		.methods = settings.methods,
 		.backends = settings.backend,
+		.techniques = settings.techniques,
+		.effects = settings.effects,
 		.width = settings.size[0],
 		.height = settings.size[1],
 		.frames = settings.frames,

@@ -96,6 +96,7 @@ static const char *const reference_names[] = {
 	[GZ_REFERENCE_NONE] = "none",
 	[GZ_REFERENCE_VOLUME] = "volume",
 	[GZ_REFERENCE_SURFACE] = "surface",
+	[GZ_REFERENCE_VOXELS] = "voxels",
 };
 
 static json_t *row_json(const struct gz_comparison *comparison, const struct gz_comparison_row *row)

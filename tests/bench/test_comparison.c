@@ -165,8 +165,12 @@ static void check_rows(const struct gz_comparison *comparison)
 	assert_true(surface->prepare_ms > 0);
 	const struct gz_comparison_row *glass = find_row(comparison, "isosurface", "glass", 1);
 	assert_non_null(glass);
-	assert_int_equal(glass->reference, GZ_REFERENCE_NONE);
-	assert_true(isnan(glass->converged.flip));
+	assert_int_equal(glass->reference, GZ_REFERENCE_VOXELS);
+	const struct gz_comparison_row *hard = find_row(comparison, "isosurface", "shadow", 0);
+	assert_non_null(hard);
+	assert_int_equal(hard->reference, GZ_REFERENCE_VOXELS);
+	if (!(hard->converged.psnr_db > 24))
+		fail_msg("%g dB", hard->converged.psnr_db);
 }
 
 static void comparison_measures_each_technique_and_writes_its_folder(void **state)
@@ -182,6 +186,8 @@ static void comparison_measures_each_technique_and_writes_its_folder(void **stat
 		.scene_count = 1,
 		.methods = "uniform",
 		.backends = "cpu",
+		.techniques = "",
+		.effects = "",
 		.width = 48,
 		.height = 40,
 		.frames = 2,
@@ -215,6 +221,39 @@ static void comparison_measures_each_technique_and_writes_its_folder(void **stat
 	gz_comparison_free(&comparison);
 }
 
+static void part_of_the_comparison_has_the_same_references(void **state)
+{
+	struct place *place = *state;
+	char scene[128];
+	snprintf(scene, sizeof scene, "%s/a.scene", place->path);
+	const char *const scenes[] = { scene };
+	const struct gz_comparison_request request = {
+		.scenes = scenes,
+		.scene_count = 1,
+		.methods = "",
+		.backends = "cpu",
+		.techniques = "slices,raycast",
+		.effects = "both,shadow",
+		.width = 24,
+		.height = 24,
+		.frames = 1,
+		.isovalue = NAN,
+		.errors = true,
+		.program = "test",
+		.commit = "unknown",
+	};
+	struct gz_comparison comparison;
+	assert_int_equal(gz_comparison_run(&request, NULL, &comparison), GZ_OK);
+	assert_non_null(find_row(&comparison, "raycast", "shadow", 0));
+	for (size_t i = 0; i < comparison.row_count; i++) {
+		const struct gz_comparison_row *row = &comparison.rows[i];
+		assert_int_equal(row->reference, GZ_REFERENCE_VOLUME);
+		assert_true(row->effect == &gz_effects[2] || row->effect == &gz_effects[3]);
+		assert_string_not_equal(row->technique->name, "isosurface");
+	}
+	gz_comparison_free(&comparison);
+}
+
 static void calls_that_are_not_understood_are_refused(void **state)
 {
 	struct place *place = *state;
@@ -222,13 +261,21 @@ static void calls_that_are_not_understood_are_refused(void **state)
 		{ "techniques", NULL },
 		{ "techniques", "a.scene", NULL },
 		{ "techniques", "a.scene", "--out", "s", "--backend=quantum", NULL },
+		{ "techniques", "a.scene", "--out", "s", "--techniques=quantum", NULL },
+		{ "techniques", "a.scene", "--out", "s", "--effects=none,fog", NULL },
 		{ "techniques", "a.scene", "--out", "s", "--isovalue=nan", NULL },
 		{ "techniques", "a.scene", "--out", "s", "--methods=fast", NULL },
 		{ "techniques", "a.scene", "--out", "s", "--methods=table", NULL },
 	};
 	static const char *const said[] = {
-		"no scene",     "--out", "no technique has this backend",
-		"not a number", "mdc",   "use gazebench run"
+		"no scene",
+		"--out",
+		"no technique has this backend",
+		"there are raycast, isosurface",
+		"'fog': no effect",
+		"not a number",
+		"mdc",
+		"use gazebench run",
 	};
 	for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
 		place_run(place, calls[i]);
@@ -257,6 +304,7 @@ TEST_SUITE(comparison)
 		cmocka_unit_test(long_frames_count_more_in_the_weighted_mean),
 		cmocka_unit_test(printed_times_are_those_of_the_papers),
 		IN_A_PLACE(comparison_measures_each_technique_and_writes_its_folder),
+		IN_A_PLACE(part_of_the_comparison_has_the_same_references),
 		IN_A_PLACE(calls_that_are_not_understood_are_refused),
 		IN_A_PLACE(scene_with_meshes_is_refused),
 	};
