@@ -149,7 +149,9 @@ static enum gz_result list_effects(struct probe *probe, struct gz_comparison_ser
 			.effect = &gz_effects[i],
 			.why = i == 0 ? GZ_ABSENT_BACKEND : GZ_ABSENT_EFFECT,
 		};
-		const bool drawn = draw_probe(probe, i, &series->rays);
+		const bool had = !gz_effects[i].needs ||
+				 gz_technique_has_key(series->technique, gz_effects[i].needs);
+		const bool drawn = had && draw_probe(probe, i, &series->rays);
 		const bool shows = drawn && changes_something(probe, i);
 		if (is_asked_for(probe->effects, gz_effects[i].name))
 			result = shows ? add_counts(list, series) : add_gap(list, &gap);

@@ -15,11 +15,14 @@
 #define SHADOW { "isosurface.shadows", "yes" }, { "light.shadow_steps", SHADOW_STEPS }
 
 const struct gz_effect gz_effects[GZ_EFFECT_COUNT] = {
-	{ "none", "no effect", { NO_REFLECTION, NO_SHADOW, { NULL, NULL } } },
-	{ "reflection", "reflection", { REFLECTION, NO_SHADOW, { NULL, NULL } } },
-	{ "shadow", "shadow", { NO_REFLECTION, SHADOW, { NULL, NULL } } },
-	{ "both", "reflection and shadow", { REFLECTION, SHADOW, { NULL, NULL } } },
-	{ "glass", "reflection and refraction of glass", { GLASS, NO_SHADOW, { NULL, NULL } } },
+	{ "none", "no effect", NULL, { NO_REFLECTION, NO_SHADOW, { NULL, NULL } } },
+	{ "reflection", "reflection", NULL, { REFLECTION, NO_SHADOW, { NULL, NULL } } },
+	{ "shadow", "shadow", NULL, { NO_REFLECTION, SHADOW, { NULL, NULL } } },
+	{ "both", "reflection and shadow", NULL, { REFLECTION, SHADOW, { NULL, NULL } } },
+	{ "glass",
+	  "reflection and refraction of glass",
+	  "isosurface.material",
+	  { GLASS, NO_SHADOW, { NULL, NULL } } },
 };
 /* clang-format on */
 

@@ -22,6 +22,7 @@
 struct gz_effect {
 	const char *name;  /**< in files: "none", "reflection", "shadow", "both", "glass" */
 	const char *words; /**< in tables */
+	const char *needs; /**< key of techniques that have the effect; NULL: any of its keys */
 	/** Keys of a scene and their values; key NULL behind the last. */
 	struct {
 		const char *key, *value;

@@ -163,6 +163,7 @@ static void check_rows(const struct gz_comparison *comparison)
 	if (!(surface->converged.psnr_db > 24)) /* silhouettes, one ray a pixel */
 		fail_msg("%g dB", surface->converged.psnr_db);
 	assert_true(surface->prepare_ms > 0);
+	assert_null(find_row(comparison, "raycast", "glass", 0)); /* it only has the sky */
 	const struct gz_comparison_row *glass = find_row(comparison, "isosurface", "glass", 1);
 	assert_non_null(glass);
 	assert_int_equal(glass->reference, GZ_REFERENCE_VOXELS);
