@@ -1,12 +1,14 @@
 #include "render/mesh/label_names.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/file.h"
 #include "base/text.h"
+#include "render/data/text_head.h"
 
 #define GZ_LOG_MODULE "labels"
 
@@ -420,9 +422,129 @@ enum gz_result gz_label_names_parse(const char *file, const char *text, size_t s
 	return GZ_OK;
 }
 
+/* ---- segments in the header of a volume ---- */
+
+/* What a header says about one segment, until all of its lines are read. */
+struct label_segment {
+	struct gz_label_name name;
+	bool has_number, is_elsewhere; /* in another layer than the first */
+};
+
+/* The number in "Segment0_Name:=liver", and the key behind it; -1: another line. */
+static int find_segment(const char *line, const char **out_key)
+{
+	static const char begin[] = "Segment";
+	const char *digits = line + sizeof begin - 1;
+	char *end;
+	if (strncmp(line, begin, sizeof begin - 1) != 0 || *digits < '0' || *digits > '9')
+		return -1;
+	const unsigned long index = strtoul(digits, &end, 10);
+	*out_key = end;
+	return *end == '_' && index < GZ_LABEL_SEGMENTS_MAX ? (int)index : -1;
+}
+
+static const char *take_segment_name(char *text, struct label_segment *segment)
+{
+	return take_label_name(text, strlen(text), &segment->name) ? NULL : wrong_name;
+}
+
+static const char *take_segment_number(char *text, struct label_segment *segment)
+{
+	segment->has_number = take_label_number(text, &segment->name.number);
+	return segment->has_number ? NULL : "a LabelValue is a whole number";
+}
+
+static const char *take_segment_colour(char *text, struct label_segment *segment)
+{
+	double colour[3];
+	if (!gz_text_numbers(text, colour, 3))
+		return "a Color is red, green and blue, each 0 to 1";
+	segment->name.has_colour = true;
+	for (int i = 0; i < 3; i++)
+		segment->name.colour[i] = (float)fmin(fmax(colour[i], 0), 1);
+	return NULL;
+}
+
+static const char *take_segment_layer(char *text, struct label_segment *segment)
+{
+	double layer;
+	segment->is_elsewhere = gz_text_numbers(text, &layer, 1) && layer != 0;
+	return NULL;
+}
+
+static const struct {
+	const char *key;
+	const char *(*take)(char *text, struct label_segment *segment);
+} segment_keys[] = {
+	{ "_Name:=", take_segment_name },
+	{ "_LabelValue:=", take_segment_number },
+	{ "_Color:=", take_segment_colour },
+	{ "_Layer:=", take_segment_layer },
+};
+
+/* Take a line of a header. @return what is wrong with it; NULL: nothing */
+static const char *take_segment_line(char *line, struct label_segment *segments)
+{
+	const char *key = NULL;
+	const int index = find_segment(line, &key);
+	for (size_t i = 0; index >= 0 && i < sizeof segment_keys / sizeof segment_keys[0]; i++) {
+		const size_t length = strlen(segment_keys[i].key);
+		if (strncmp(key, segment_keys[i].key, length) == 0)
+			return segment_keys[i].take(line + (key - line) + length, &segments[index]);
+	}
+	return NULL;
+}
+
+static enum gz_result read_segments(struct label_parser *parser, struct gz_text_head *head,
+				    struct label_segment *segments)
+{
+	enum gz_result result = GZ_OK;
+	for (char *line; (line = gz_text_head_line(head)) && line[0];) {
+		parser->line = head->line;
+		const char *wrong = take_segment_line(line, segments);
+		if (wrong)
+			return refuse_label_row(parser, wrong);
+	}
+	for (int i = 0; i < GZ_LABEL_SEGMENTS_MAX && result == GZ_OK; i++) {
+		segments[i].name.line = i + 1;
+		if (segments[i].has_number && segments[i].name.name[0] && !segments[i].is_elsewhere)
+			result = append_label_name(parser, &segments[i].name);
+	}
+	if (result == GZ_OK && parser->names.count == 0)
+		return refuse_label_row(parser, "the header names no segment");
+	return result;
+}
+
+static enum gz_result read_label_header(const char *path, const struct gz_log *log,
+					struct gz_label_names *out_names)
+{
+	struct label_parser parser = { .file = path, .log = log };
+	struct gz_text_head head = { 0 };
+	struct label_segment *segments = calloc(GZ_LABEL_SEGMENTS_MAX, sizeof *segments);
+	enum gz_result result = segments ? gz_text_head_open(&head, path, log) : GZ_ERR_NO_MEM;
+	if (result == GZ_OK)
+		result = read_segments(&parser, &head, segments);
+	gz_text_head_free(&head);
+	free(segments);
+	if (result != GZ_OK) {
+		gz_label_names_free(&parser.names);
+		return result;
+	}
+	sort_label_names(&parser);
+	*out_names = parser.names;
+	return GZ_OK;
+}
+
+static bool is_nrrd(const char *path)
+{
+	return gz_path_ends(path, ".nrrd") || gz_path_ends(path, ".nhdr");
+}
+
 enum gz_result gz_label_names_read(const char *path, const struct gz_log *log,
 				   struct gz_label_names *out_names)
 {
+	if (is_nrrd(path))
+		return read_label_header(path, log, out_names);
 	const struct gz_text_file file = { path, "names of labels", FILE_SIZE_MAX };
 	struct gz_text text = { 0 };
 	enum gz_result result = gz_text_load(&text, &file, log);
@@ -467,8 +589,10 @@ bool gz_label_names_beside(const char *volume, char out_path[GZ_PATH_SIZE])
 					  files[k]) == GZ_OK &&
 			    access(out_path, R_OK) == 0)
 				return true;
-	return gz_path_beside(volume, "FreeSurferColorLUT.txt", out_path, GZ_PATH_SIZE) == GZ_OK &&
-	       access(out_path, R_OK) == 0;
+	if (gz_path_beside(volume, "FreeSurferColorLUT.txt", out_path, GZ_PATH_SIZE) == GZ_OK &&
+	    access(out_path, R_OK) == 0)
+		return true;
+	return is_nrrd(volume) && gz_text_print(out_path, GZ_PATH_SIZE, "%s", volume) == GZ_OK;
 }
 
 const struct gz_label_name *gz_label_names_find(const struct gz_label_names *names, int32_t number)

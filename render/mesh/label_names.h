@@ -12,6 +12,14 @@
  * MRIcron (aal.nii.txt) |
  *
  * Rows that begin with # are comments. The first row tells the format.
+ *
+ * 3D Slicer also writes names into the header of a segmentation (.seg.nrrd), as lines such as
+ *
+ *     Segment0_Name:=liver
+ *     Segment0_LabelValue:=3
+ *     Segment0_Color:=0.86 0.51 0.39
+ *
+ * Segments of another layer than the first (Segment0_Layer:=0) overlap these and are left out.
  */
 #ifndef GZ_RENDER_MESH_LABEL_NAMES_H
 #define GZ_RENDER_MESH_LABEL_NAMES_H
@@ -29,6 +37,9 @@
 
 /** Most rows of a file. Chosen: FreeSurfer's has 14 000. */
 #define GZ_LABEL_NAMES_MAX 65536
+
+/** Most segments that a header names. Chosen: as many as labels that can be shown. */
+#define GZ_LABEL_SEGMENTS_MAX 960
 
 /** What a file says about one label. */
 struct gz_label_name {
@@ -59,14 +70,15 @@ struct gz_label_names {
 enum gz_result gz_label_names_parse(const char *file, const char *text, size_t size,
 				    const struct gz_log *log, struct gz_label_names *out_names);
 
-/** Read names from a file of at most 8 MiB. @return what gz_text_load() and gz_label_names_parse()
- *  return; logged */
+/** Read names from a file of at most 8 MiB, or from the header of a NRRD file. @return what
+ *  gz_text_load() or gz_text_head_open(), and gz_label_names_parse() return; logged */
 enum gz_result gz_label_names_read(const char *path, const struct gz_log *log,
 				   struct gz_label_names *out_names);
 
 /**
  * Find the file of names that lies beside a volume: of its name with .txt, .label, .ctbl, .tsv or
- * .lut.txt in place of its ending or behind it, or FreeSurferColorLUT.txt in its folder.
+ * .lut.txt in place of its ending or behind it, or FreeSurferColorLUT.txt in its folder; else the
+ * volume itself if it is a NRRD file, which may name segments.
  *
  * @param[out] out_path  of an existing file
  * @return false: there is none
