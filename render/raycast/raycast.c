@@ -197,7 +197,7 @@ static enum gz_result raycast_draw(struct gz_drawer *drawer, const struct gz_sho
 	struct raycast_drawer *self = raycast_of(drawer);
 	const enum gz_result result = gz_raycaster_draw(self->raycaster, shot, image, out_stats);
 	if (result == GZ_OK && out_stats)
-		out_stats->prepare_ms = self->prepare_ms;
+		out_stats->prepare_ms += self->prepare_ms;
 	if (result == GZ_OK)
 		self->prepare_ms = 0;
 	return result;

@@ -73,7 +73,7 @@ static enum gz_result slices_draw(struct gz_drawer *drawer, const struct gz_shot
 	if (result != GZ_OK)
 		return result;
 	if (out_stats)
-		out_stats->prepare_ms = self->prepare_ms;
+		out_stats->prepare_ms += self->prepare_ms;
 	self->prepare_ms = 0;
 	return GZ_OK;
 }

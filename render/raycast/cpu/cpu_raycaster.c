@@ -577,7 +577,6 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	if (result != GZ_OK)
 		return result;
 
-	const int64_t start_ns = gz_clock_now_ns();
 	double prepare_ms = 0;
 	result = gz_cube_pictures_prepare(&cpu->pictures, &rays->environment, raycaster->log,
 					  &prepare_ms);
@@ -586,6 +585,8 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 					     cpu->workers, raycaster->log);
 	if (result != GZ_OK)
 		return result;
+	prepare_ms += gz_lighting_take_spent_ms(&cpu->lighting);
+	const int64_t start_ns = gz_clock_now_ns();
 	const bool nearest = gz_ray_samples_nearest(rays, cpu->volume);
 	const bool rich =
 		gz_ray_params_lit(rays) || rays->integration == GZ_INTEGRATION_PREINTEGRATED;
@@ -617,6 +618,8 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
 			.samples = samples,
+			.prepare_ms = prepare_ms,
+			.prepare_within_ms = prepare_ms,
 			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
 			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
 			.gpu_ms = NAN,

@@ -275,6 +275,8 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
 			.samples = gz_gl_cast_samples(&gl->cast, &gl->device),
+			.prepare_ms = gl->scene.prepare_ms,
+			.prepare_within_ms = gl->scene.prepare_ms,
 			.cast_ms = gz_gl_timer_ms(&gl->timer, &gl->device, MARK_START, MARK_CAST),
 			.reconstruct_ms =
 				gz_gl_timer_ms(&gl->timer, &gl->device, MARK_CAST, MARK_END),

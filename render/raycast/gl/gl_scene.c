@@ -247,9 +247,8 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_g
 static enum gz_result prepare_pictures(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				       const struct gz_ray_params *rays, const struct gz_log *log)
 {
-	double prepare_ms = 0;
-	const enum gz_result result =
-		gz_cube_pictures_prepare(&scene->pictures, &rays->environment, log, &prepare_ms);
+	const enum gz_result result = gz_cube_pictures_prepare(&scene->pictures, &rays->environment,
+							       log, &scene->prepare_ms);
 	return result == GZ_OK ? gz_gl_cube_bind(&scene->cube, device, &scene->pictures,
 						 GZ_GL_UNIT_CUBE, log)
 			       : result;
@@ -352,6 +351,7 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 		choose_levels(scene, plan, frame->rays, pixel_lengths, out_levels);
 	}
 	enum gz_result result = prepare_light(scene, device, frame, coarser, log);
+	scene->prepare_ms = gz_lighting_take_spent_ms(&scene->lighting);
 	if (result == GZ_OK)
 		result = prepare_pictures(scene, device, frame->rays, log);
 	if (result == GZ_OK)

@@ -54,6 +54,7 @@ struct gz_gl_scene {
 	struct gz_gl_grid arriving;
 	uint64_t arriving_serial;     /**< of the grid in the texture */
 	struct gz_volume_shade shade; /**< on others in the picture */
+	double prepare_ms;            /**< that the last frame spent on what later frames reuse */
 };
 
 /**

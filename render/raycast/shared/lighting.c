@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "base/clock.h"
 #include "render/light/light.h"
 #include "render/light/light_constants.h"
 
@@ -33,8 +34,10 @@ static enum gz_result prepare_occlusion(struct gz_lighting *lighting,
 	    gz_clip_box_same(&lighting->clip, &rays->clip))
 		return GZ_OK;
 	lighting->current = false;
+	const int64_t start_ns = gz_clock_now_ns();
 	const enum gz_result result = gz_occlusion_make(lighting->volume, lighting->table, radius,
 							&rays->clip, workers, &lighting->occlusion);
+	lighting->spent_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for ambient occlusion: set light.occlusion to 0");
 		return result;
@@ -58,8 +61,10 @@ static enum gz_result prepare_shadows(struct gz_lighting *lighting,
 	if (lighting->shadows_current && gz_clip_box_same(&lighting->shadow_clip, &rays->clip))
 		return GZ_OK;
 	lighting->shadows_current = false;
+	const int64_t start_ns = gz_clock_now_ns();
 	const enum gz_result result = gz_shadow_cells_make(
 		lighting->volume, lighting->table, &rays->clip, workers, &lighting->shadows);
+	lighting->spent_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for shadows: set light.shadow_steps to 0");
 		return result;
@@ -82,6 +87,13 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 	if (result == GZ_OK && rays->light.shadow_steps > 0)
 		result = prepare_shadows(lighting, rays, workers, log);
 	return result;
+}
+
+double gz_lighting_take_spent_ms(struct gz_lighting *lighting)
+{
+	const double spent_ms = lighting->spent_ms;
+	lighting->spent_ms = 0;
+	return spent_ms;
 }
 
 void gz_cast_cells_fill(const uint16_t *cells, const int dims[3], const int edge[3],

@@ -66,7 +66,8 @@ struct gz_lighting {
 	struct gz_shadow_cells shadows;
 	bool shadows_current; /**< shadows are for the present transfer function and shadow_clip */
 	struct gz_clip_box shadow_clip;
-	const struct gz_volume *volume;        /**< of gz_lighting_prepare(), borrowed */
+	double spent_ms;                /**< making both, until gz_lighting_take_spent_ms() */
+	const struct gz_volume *volume; /**< of gz_lighting_prepare(), borrowed */
 	const struct gz_transfer_table *table; /**< of gz_lighting_prepare(), borrowed */
 };
 
@@ -87,6 +88,10 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 				   const struct gz_transfer_table *table,
 				   const struct gz_ray_params *rays, struct gz_workers *workers,
 				   const struct gz_log *log);
+
+/** The time that gz_lighting_prepare() has spent on what later frames reuse, since the last call;
+ * 0: none was due. */
+double gz_lighting_take_spent_ms(struct gz_lighting *lighting);
 
 /**
  * Fill what the kernels take of light, after gz_lighting_prepare() with the same @p rays.

@@ -446,6 +446,8 @@ static struct gz_frame_stats frame_stats(const struct gz_gl_slicer *slicer)
 	const struct gz_gl_device *device = &slicer->device;
 	struct gz_frame_stats stats = {
 		.samples = count_samples(slicer),
+		.prepare_ms = slicer->scene.prepare_ms,
+		.prepare_within_ms = slicer->scene.prepare_ms,
 		.cast_ms = gz_gl_timer_ms(timer, device, MARK_START, MARK_DRAWN),
 		.reconstruct_ms = gz_gl_timer_ms(timer, device, MARK_DRAWN, MARK_END),
 		.gpu_ms = device->software ? NAN
