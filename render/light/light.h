@@ -68,8 +68,12 @@ enum gz_light_frame {
  *                                between their middles, and i the greatest whole number with
  *                                GZ_SHADOW_DIRECT 2^i up to the planned length, or the last level
  *
- * so that cells are about as large as steps are long. T is 0 where a surface of another technique
- * in the picture stands in the way, s or more from the place.
+ * so that cells are about as large as steps are long. On the way from surfaces of other techniques
+ * steps lead from i / n to (i + k) / n from the fifth on (GZ_SHADOW_FIRST), where the plan lets the
+ * steps of rays be k times as long as the scene's.
+ *
+ * T is 0 where a surface of another technique in the picture stands in the way, s or more from the
+ * place.
  *
  * Samples do not walk themselves. T is found so in the middles of a grid's cells, kept in units of
  * 1/65535, and is trilinear between them. The cells are those of the finest level that has at most

@@ -21,6 +21,8 @@
 /** Steps towards the light that are shorter, voxel lengths, read voxels, longer ones blocks of
  * them. Chosen: at twice its length the tent of the first blocks, of two voxels, spans the step. */
 #define GZ_SHADOW_DIRECT 3.0F
+/** The first steps towards the light are never lengthened. Chosen: they show where things touch. */
+#define GZ_SHADOW_FIRST 4.0F
 /** A sample is black once less than 1 / 2^this of the light arrives. Chosen: a quarter of a grey
  *  level. */
 #define GZ_SHADOW_BLACK 10.0F

@@ -19,6 +19,9 @@ struct gz_shade_places {
 	float at[3][GZ_SHADE_PLACES]; /**< in the world */
 	uint32_t active;              /**< bit i: place i is asked for */
 	float from; /**< what lies nearer to a place, world units, keeps no light from it */
+	/** How many times longer than the scene's the steps towards the light may be, as those of
+	 *  the plan's rays to these places are; up to 1: as long as the scene's. */
+	float step;
 };
 
 /** What one technique keeps back of a picture's light. Zero-initialised it is nothing. */

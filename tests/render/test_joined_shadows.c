@@ -9,6 +9,7 @@
 #include "joined_scene.h"
 #include "oracle.h"
 #include "render/opengl/gl_device.h"
+#include "render/raycast/shared/raycaster.h"
 #include "small_scene.h"
 
 /* Nothing nearer to a place than this casts a shadow on smoke: GZ_SHADOW_START, mm. */
@@ -398,6 +399,51 @@ static void surface_in_the_voxels_casts_the_shadow_of_its_triangles(void **state
 	joined_take_down(&joined);
 }
 
+/* The share of the light that smoke leaves at a row of places, with steps this many times as long
+ * as the scene's. */
+static void find_shares(const struct joined *joined, int steps, float longer,
+			float out_shares[GZ_SHADE_PLACES])
+{
+	struct gz_raycaster *caster = NULL;
+	struct gz_ray_params rays = joined->rays;
+	struct gz_plan plan = { 0 };
+	struct gz_shade shade;
+	struct gz_shade_places places = { .active = 0xFFFF, .step = longer };
+	rays.light.shadow_steps = steps;
+	for (int i = 0; i < GZ_SHADE_PLACES; i++)
+		places.at[0][i] = 0.1F + 0.02F * (float)i;
+	const struct gz_shot shot = { .camera = &joined->camera, .settings = &rays, .plan = &plan };
+	assert_int_equal(gz_plan_make(&joined->foveation, &joined->display,
+				      (struct gz_point) { 0.5F, 0.5F }, WIDTH, HEIGHT, &plan),
+			 GZ_OK);
+	assert_int_equal(gz_raycaster_create("cpu", &TWO_THREADS, NULL, &caster), GZ_OK);
+	assert_int_equal(gz_raycaster_set_volume(caster, &joined->volume), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(caster, &joined->transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_shade(caster, &shot, &shade), GZ_OK);
+	shade.find(shade.user, &places, out_shares);
+	gz_raycaster_destroy(&caster);
+	gz_plan_free(&plan);
+}
+
+static void steps_towards_the_light_grow_with_those_of_the_plan(void **state)
+{
+	(void)state;
+	struct joined joined;
+	float fine[GZ_SHADE_PLACES], grown[GZ_SHADE_PLACES];
+	set_up_shadows(1, &joined);
+	find_shares(&joined, 31, 1, fine);
+	find_shares(&joined, 31, 0, grown); /* not said: as long as the scene's */
+	assert_memory_equal(grown, fine, sizeof grown);
+	find_shares(&joined, 31, 2.5F, grown);
+	assert_memory_not_equal(grown, fine, sizeof grown);
+	for (int i = 0; i < GZ_SHADE_PLACES; i++)
+		assert_float_equal(grown[i], fine[i], 0.1);
+	find_shares(&joined, 4, 1, fine); /* the first ones are never lengthened */
+	find_shares(&joined, 4, 2.5F, grown);
+	assert_memory_equal(grown, fine, sizeof grown);
+	joined_take_down(&joined);
+}
+
 TEST_SUITE(joined_shadows)
 {
 	const struct CMUnitTest tests[] = {
@@ -407,6 +453,7 @@ TEST_SUITE(joined_shadows)
 		cmocka_unit_test(shadows_follow_a_ball_that_moves),
 		cmocka_unit_test(keys_say_what_casts_a_shadow),
 		cmocka_unit_test(what_the_clip_box_cuts_off_casts_no_shadow),
+		cmocka_unit_test(steps_towards_the_light_grow_with_those_of_the_plan),
 		cmocka_unit_test(surface_in_the_voxels_casts_the_shadow_of_its_triangles),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

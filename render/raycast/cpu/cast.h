@@ -107,6 +107,8 @@ typedef uint32_t gz_cast_tile_function(const struct gz_cast *cast, const struct 
 struct gz_cast_places {
 	float at[3][GZ_TILE_RAYS];
 	uint32_t active; /**< bit i: place i is asked for */
+	float longer;    /**< times as long as planned are steps towards the light, but for the
+			      first GZ_SHADOW_FIRST; at least 1 */
 };
 
 /** Find which share of the light arrives at some places by walking towards it, as struct gz_light

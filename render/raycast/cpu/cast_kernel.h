@@ -228,8 +228,8 @@ static void arriving_shares(const struct gz_cast *cast, enum gz_voxel_type type,
 		const vm mask = vm_from_bits(places->active >> first);
 		const vf at[3] = { vf_load(places->at[0] + first), vf_load(places->at[1] + first),
 				   vf_load(places->at[2] + first) };
-		vf_store(out_shares + first,
-			 walk_to_light(cast, (struct reading) { type, nearest }, at, mask));
+		vf_store(out_shares + first, walk_to_light(cast, (struct reading) { type, nearest },
+							   places->longer, at, mask));
 	}
 }
 

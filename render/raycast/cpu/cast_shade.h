@@ -276,18 +276,20 @@ SIMD vf find_kept(const struct gz_cast *cast, struct reading reading, float plan
 
 /* The share of light that arrives at places counted from the first datum, by steps towards it:
  * struct gz_light has the formulas. */
-SIMD vf walk_to_light(const struct gz_cast *cast, struct reading reading, const vf at[3], vm mask)
+SIMD vf walk_to_light(const struct gz_cast *cast, struct reading reading, float longer,
+		      const vf at[3], vm mask)
 {
 	const struct gz_cast_shadow *shadow = &cast->light.shadow;
-	const int steps = shadow->steps;
 	vf leave = vf_set(shadow->reach), kept = vf_set(0);
 	for (int axis = 0; axis < 3; axis++)
 		leave = vf_min(leave, (vf_set(shadow->exit[axis]) - at[axis]) *
 					      vf_set(shadow->inverse[axis]));
-	const float unit = (shadow->reach - GZ_SHADOW_START) / (float)(steps * steps);
-	for (int i = 0; i < steps; i++) {
-		const float from = GZ_SHADOW_START + unit * (float)(i * i),
-			    planned = unit * (float)(2 * i + 1);
+	const float steps = (float)shadow->steps;
+	const float unit = (shadow->reach - GZ_SHADOW_START) / (steps * steps);
+	for (float i = 0, next; i < steps; i = next) {
+		next = fminf(i + (i < GZ_SHADOW_FIRST ? 1 : longer), steps);
+		const float from = GZ_SHADOW_START + unit * (i * i),
+			    planned = unit * (next * next - i * i);
 		const vf length = vf_min(leave - vf_set(from), vf_set(planned));
 		const vm within = vm_and(vm_and(mask, vf_less(vf_set(0), length)),
 					 vf_less(kept, vf_set(GZ_SHADOW_BLACK)));

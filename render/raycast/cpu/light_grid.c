@@ -90,7 +90,7 @@ static void fill_light_cells(const struct light_grid_job *job, const int first[3
 {
 	const struct gz_light_walk *walk = &job->walk;
 	const int *edge = job->grid->edge;
-	struct gz_cast_places places = { .active = 0 };
+	struct gz_cast_places places = { .longer = 1 };
 	float shares[GZ_TILE_RAYS] = { 0 };
 	for (int i = 0; i < count; i++) {
 		const int cell[3] = { first[0] + i, first[1], first[2] };

@@ -28,7 +28,7 @@ static void find_share_of_light(const void *user, const struct gz_shade_places *
 	const struct gz_volume_shade *shade = user;
 	const struct gz_light_walk *walk = &shade->walk;
 	const float *towards = walk->cast.light.shadow.towards;
-	struct gz_cast_places starts = { .active = 0 };
+	struct gz_cast_places starts = { .longer = fmaxf(places->step, 1) };
 	float shares[GZ_SHADE_PLACES];
 	for (int i = 0; i < GZ_SHADE_PLACES; i++) {
 		float at[3];

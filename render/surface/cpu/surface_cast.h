@@ -63,6 +63,7 @@ struct gz_surface_cast {
 struct gz_surface_tile {
 	float x[GZ_SURFACE_RAYS], y[GZ_SURFACE_RAYS]; /**< pixels of its rays */
 	uint32_t active;                              /**< bit i: cast ray i */
+	float step;    /**< of its rays, times that of the scene: gz_shade_places.step */
 	bool coherent; /**< rays lie close together: a hint that changes nothing but the time */
 };
 

@@ -372,6 +372,7 @@ static void cast_surface_part(void *user, size_t part, int worker)
 		const struct gz_tile *tile = &plan->tiles[i];
 		const int spacing = plan->layers[tile->layer].spacing;
 		struct gz_surface_tile rays = { .active = gz_plan_tile_active(plan, tile),
+						.step = plan->steps[tile->step],
 						.coherent = spacing <= job->coherent_spacing };
 		struct gz_surface_hits hits;
 		uint32_t depth[GZ_SURFACE_RAYS];

@@ -192,13 +192,13 @@ SIMD void darken_lanes(const struct gz_surface_cast *cast, int first, struct pac
 }
 
 /* Take from the light what others keep back of it, where no surface does. */
-static __attribute__((noinline)) void dim_by_shades(const struct gz_surface_cast *cast,
+static __attribute__((noinline)) void dim_by_shades(const struct gz_surface_cast *cast, float step,
 						    struct packet *packet)
 {
 	const struct RTCRay16 *ray = &packet->shadow;
 	const float *const origins[3] = { ray->org_x, ray->org_y, ray->org_z };
 	const float ambient = cast->frame.light.ambient;
-	struct gz_shade_places places = { .active = 0 };
+	struct gz_shade_places places = { .step = step };
 	for (int i = 0; i < GZ_SURFACE_RAYS; i++) {
 		places.active |= (uint32_t)(packet->valid[i] && ray->tfar[i] >= 0) << i;
 		for (int axis = 0; axis < 3; axis++)
@@ -346,7 +346,7 @@ static void cast_surface_tile(const struct gz_surface_cast *cast,
 		EACH_REGISTER darken_lanes(cast, first, &packet);
 	}
 	if (cast->shade_count > 0 && any_lit)
-		dim_by_shades(cast, &packet);
+		dim_by_shades(cast, tile->step, &packet);
 	EACH_REGISTER colour_lanes(cast, first, &packet, out_hits);
 }
 
