@@ -166,11 +166,18 @@ static void list_meshes(struct gz_surface_caster *caster)
 		};
 }
 
+static double length_of(const float vector[3])
+{
+	const double x = vector[0], y = vector[1], z = vector[2];
+	return sqrt(x * x + y * y + z * z);
+}
+
 static double edge_of(const struct gz_mesh *mesh, size_t triangle)
 {
 	const float *from = mesh->positions[mesh->triangles[triangle][0]];
 	const float *to = mesh->positions[mesh->triangles[triangle][1]];
-	return hypot(hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
+	const float edge[3] = { to[0] - from[0], to[1] - from[1], to[2] - from[2] };
+	return length_of(edge);
 }
 
 /* The mean edge of what is shown, from some triangles of all meshes. */
@@ -444,11 +451,6 @@ static void fill_surface_cast(struct gz_surface_caster *caster, const struct gz_
 	colour_meshes(caster, &shot->rays->surface);
 	fill_field(caster, cast);
 	cast->frame = gz_surface_frame_make(&caster->meshes, &caster->cube, shot->rays, frame);
-}
-
-static double length_of(const float vector[3])
-{
-	return hypot(hypot(vector[0], vector[1]), vector[2]);
 }
 
 /* The greatest spacing of rays that lie close together, px. */
