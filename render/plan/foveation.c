@@ -10,6 +10,8 @@
 
 const char *const gz_step_rule_names[] = { "method", "none", "distance", "acuity", NULL };
 
+const char *const gz_step_phase_names[] = { "lit", "aligned", "interleaved", NULL };
+
 const char *const gz_filter_names[] = { "catmull_rom", "bilinear", NULL };
 
 #define AT(field) offsetof(struct gz_foveation, field)
@@ -19,6 +21,10 @@ const struct gz_option gz_foveation_options[] = {
 	  .preset = "acuity", .help = "foveation method" },
 	{ "foveation.step_rule", GZ_OPTION_CHOICE, AT(step_rule), .choices = gz_step_rule_names,
 	  .preset = "method", .help = "how steps along a ray grow away from the gaze" },
+	{ "foveation.step_phase", GZ_OPTION_CHOICE, AT(step_phase), .choices = gz_step_phase_names,
+	  .preset = "lit",
+	  .help = "samples of neighbouring rays with longer steps: aligned, interleaved, or "
+		  "interleaved where surfaces are lit" },
 	{ "foveation.reconstruction", GZ_OPTION_CHOICE, AT(filter), .choices = gz_filter_names,
 	  .preset = "catmull_rom",
 	  .help = "acuity, table: filter that fills the pixels between rays" },

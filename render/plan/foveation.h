@@ -31,6 +31,16 @@ enum gz_step_rule {
 /** "method", "none", "distance", "acuity"; NULL-terminated. */
 extern const char *const gz_step_rule_names[];
 
+/** Where samples lie along neighbouring rays whose steps are longer than the scene's. */
+enum gz_step_phase {
+	GZ_STEP_PHASE_LIT,         /**< interleaved if surfaces are lit, else aligned */
+	GZ_STEP_PHASE_ALIGNED,     /**< at equal distances from where the rays enter the box */
+	GZ_STEP_PHASE_INTERLEAVED, /**< gz_tile_phases apart */
+};
+
+/** "lit", "aligned", "interleaved"; NULL-terminated. */
+extern const char *const gz_step_phase_names[];
+
 /** How a pyramid fills the points between cast rays: docs/foveation.md has the formulas. */
 enum gz_filter {
 	GZ_FILTER_CATMULL_ROM, /**< from four points along an axis, clamped to the nearer two */
@@ -61,6 +71,7 @@ struct gz_spacing_table {
 struct gz_foveation {
 	int method;               /**< index into gz_methods (method.h) */
 	int step_rule;            /**< enum gz_step_rule */
+	int step_phase;           /**< enum gz_step_phase */
 	int filter;               /**< enum gz_filter; pyramids only, regions are bilinear */
 	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */

@@ -68,6 +68,7 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	plan->width = request->width;
 	plan->height = request->height;
 	plan->filter = (enum gz_filter)request->foveation->filter;
+	plan->step_phase = (enum gz_step_phase)request->foveation->step_phase;
 	plan->tile_count = 0;
 	plan->layer_count = 0;
 	plan->ray_count = 0;
@@ -132,6 +133,19 @@ const uint8_t gz_tile_columns[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE
 const uint8_t gz_tile_rows[GZ_TILE_EDGE * GZ_TILE_EDGE] = {
 	0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3,
 };
+
+/* Of Bayer's 4 x 4 matrix. A quincunx is taken as a square lattice turned by 45 degrees: ray (x, y)
+ * at column (x + y) / 2, row (x - y) / 2 of the matrix. */
+const uint8_t gz_tile_phases[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE] = {
+	[GZ_TILE_SQUARE] = { 0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5 },
+	[GZ_TILE_QUINCUNX] = { 0, 4, 1, 5, 8, 14, 9, 15, 7, 2, 6, 3, 13, 10, 12, 11 },
+};
+
+bool gz_plan_interleaves(const struct gz_plan *plan, int step, bool lit)
+{
+	return plan->steps[step] > 1 && (plan->step_phase == GZ_STEP_PHASE_INTERLEAVED ||
+					 (plan->step_phase == GZ_STEP_PHASE_LIT && lit));
+}
 
 enum gz_result gz_plan_reserve(struct gz_plan *plan, size_t count)
 {

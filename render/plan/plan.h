@@ -49,6 +49,16 @@ struct gz_tile {
 extern const uint8_t gz_tile_columns[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE];
 extern const uint8_t gz_tile_rows[GZ_TILE_EDGE * GZ_TILE_EDGE];
 
+/** How much farther out the samples of each ray of a tile begin if steps are interleaved, in
+ *  sixteenths of a step, by pattern and ray. Any four neighbours have four phases a quarter apart
+ *  (Bayer's matrix, 1973), so what one ray misses the next ones see, and errors of the step
+ * alternate from ray to ray instead of growing into bands (Keller and Heidrich, "Interleaved
+ * sampling", 2001). */
+extern const uint8_t gz_tile_phases[GZ_TILE_PATTERN_COUNT][GZ_TILE_EDGE * GZ_TILE_EDGE];
+
+/** Phases that a step has in gz_tile_phases. */
+#define GZ_TILE_PHASE_COUNT (GZ_TILE_EDGE * GZ_TILE_EDGE)
+
 /** How pixels are made from lattice points. */
 enum gz_reconstruction {
 	GZ_RECONSTRUCT_DIRECT,  /**< one layer of spacing 1 is the picture */
@@ -141,6 +151,7 @@ struct gz_plan {
 	double focus_px[2]; /**< the gaze that it was made for, or the centre if it was lost */
 	enum gz_reconstruction reconstruction;
 	enum gz_filter filter; /**< of a pyramid */
+	enum gz_step_phase step_phase;
 	int layer_count;
 	struct gz_plan_layer layers[GZ_PLAN_LAYERS_MAX];
 	int step_count;
@@ -190,6 +201,14 @@ enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct g
  * @return bit r * GZ_TILE_EDGE + c for the ray at column c, row r of the tile
  */
 uint32_t gz_plan_tile_active(const struct gz_plan *plan, const struct gz_tile *tile);
+
+/**
+ * Whether rays with this step begin a phase of gz_tile_phases apart.
+ *
+ * @param step  index into the plan's step multipliers
+ * @param lit   the technique lights surfaces
+ */
+bool gz_plan_interleaves(const struct gz_plan *plan, int step, bool lit);
 
 /** A rectangle of a rasterised picture: pixels [from, to) along x and y, with one sample in each
  *  spacing x spacing block of them. */

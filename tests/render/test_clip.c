@@ -1,4 +1,4 @@
-/* The clip box and jitter: where rays are cut. */
+/* The clip box, jitter and phases: where rays are cut. */
 #include "suite.h"
 
 #include <stddef.h>
@@ -228,6 +228,70 @@ static void jitter_keeps_the_brightness_of_constant_matter(void **state)
 	small_scene_free(&scene);
 }
 
+/* Mean difference of two pictures' blocks of 4 x 4 pixels, which have all phases of a step. */
+static double blocks_apart(const struct gz_image *a, const struct gz_image *b)
+{
+	double sum = 0;
+	for (int y = 0; y + 4 <= a->height; y += 4)
+		for (int x = 0; x + 4 <= a->width; x += 4) {
+			int difference = 0;
+			for (int i = 0; i < 16; i++) {
+				const int at = 4 * ((y + i / 4) * a->width + x + i % 4);
+				difference += a->pixels[at] - b->pixels[at];
+			}
+			sum += abs(difference) / 16.0;
+		}
+	return sum / (a->width / 4 * (a->height / 4));
+}
+
+static void errors_of_interleaved_steps_cancel_among_neighbours(void **state)
+{
+	(void)state;
+	enum { SIDE = 96 };
+	struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+	struct gz_image fine = { 0 }, aligned = { 0 }, interleaved = { 0 };
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	small_scene_render(renderer, &scene, SIDE, SIDE, &fine, NULL);
+	scene.foveation.step_rule = GZ_STEP_DISTANCE;
+	scene.foveation.step_floor = 0.0625;
+	scene.gaze = (struct gz_point) { 0, 0 };
+	scene.rays.ray_sampling_rate = 1;
+	scene.foveation.step_phase = GZ_STEP_PHASE_ALIGNED;
+	small_scene_render(renderer, &scene, SIDE, SIDE, &aligned, NULL);
+	scene.foveation.step_phase = GZ_STEP_PHASE_INTERLEAVED;
+	small_scene_render(renderer, &scene, SIDE, SIDE, &interleaved, NULL);
+	const double apart = blocks_apart(&aligned, &fine);
+	const double interleaved_apart = blocks_apart(&interleaved, &fine);
+	if (!(interleaved_apart < 0.75 * apart))
+		fail_msg("interleaved %.3f, aligned %.3f", interleaved_apart, apart);
+	gz_raycaster_destroy(&renderer);
+	gz_image_free(&fine);
+	gz_image_free(&aligned);
+	gz_image_free(&interleaved);
+	small_scene_free(&scene);
+}
+
+static void interleaved_steps_keep_the_brightness_of_constant_matter(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(48, 0.02);
+	struct gz_image aligned = { 0 }, interleaved = { 0 };
+	int x = 0, y = 0;
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	scene.foveation.step_rule = GZ_STEP_DISTANCE;
+	scene.foveation.step_phase = GZ_STEP_PHASE_ALIGNED;
+	small_scene_render(renderer, &scene, 90, 80, &aligned, NULL);
+	scene.foveation.step_phase = GZ_STEP_PHASE_INTERLEAVED;
+	small_scene_render(renderer, &scene, 90, 80, &interleaved, NULL);
+	assert_in_range(image_difference(&aligned, &interleaved, &x, &y), 0, 1);
+	gz_raycaster_destroy(&renderer);
+	gz_image_free(&aligned);
+	gz_image_free(&interleaved);
+	small_scene_free(&scene);
+}
+
 TEST_SUITE(clip)
 {
 	const struct CMUnitTest tests[] = {
@@ -244,6 +308,8 @@ TEST_SUITE(clip)
 		cmocka_unit_test(jitter_with_clip_from_inside_equals_the_oracle),
 		cmocka_unit_test(jitter_is_even_from_0_to_1_and_changes_with_its_seed),
 		cmocka_unit_test(jitter_keeps_the_brightness_of_constant_matter),
+		cmocka_unit_test(errors_of_interleaved_steps_cancel_among_neighbours),
+		cmocka_unit_test(interleaved_steps_keep_the_brightness_of_constant_matter),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -193,6 +193,21 @@ static void pre_integrated_pictures_and_levels_of_detail_equal_the_cpus(void **s
 	}
 }
 
+static void pictures_of_interleaved_steps_equal_the_cpus(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(70, 51, 64, GZ_VOXEL_U8);
+	struct pair pair = pair_of(&scene);
+	scene.foveation.method = GZ_METHOD_ACUITY;
+	scene.foveation.acuity_slope = 0.2; /* so that every rung is taken */
+	scene.foveation.step_phase = GZ_STEP_PHASE_INTERLEAVED;
+	check_pair(&pair, &scene, 200, 150, "interleaved");
+	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+	check_pair(&pair, &scene, 200, 150, "interleaved segments");
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
 static void soft_shadows_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -608,6 +623,7 @@ TEST_SUITE(gl)
 		cmocka_unit_test(
 			pictures_of_colours_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pre_integrated_pictures_and_levels_of_detail_equal_the_cpus),
+		cmocka_unit_test(pictures_of_interleaved_steps_equal_the_cpus),
 		cmocka_unit_test(soft_shadows_equal_the_cpus),
 		cmocka_unit_test(soft_shadows_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),

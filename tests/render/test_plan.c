@@ -416,6 +416,53 @@ static void each_method_is_planned_in_one_way_and_found_by_its_name(void **state
 	assert_true(gz_foveation_follows_gaze(&steps));
 }
 
+static void phases_of_a_tile_are_sixteen_and_neighbours_share_no_quarter(void **state)
+{
+	(void)state;
+	for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++) {
+		unsigned seen = 0;
+		for (int i = 0; i < GZ_TILE_PHASE_COUNT; i++)
+			seen |= 1U << gz_tile_phases[pattern][i];
+		assert_int_equal(seen, 0xFFFF);
+	}
+	/* Squares of four rays, also those that tiles share. */
+	for (int y = 0; y < GZ_TILE_EDGE; y++)
+		for (int x = 0; x < GZ_TILE_EDGE; x++) {
+			unsigned quarters = 0;
+			for (int k = 0; k < 4; k++) {
+				const int column = (x + k % 2) % GZ_TILE_EDGE;
+				const int row = (y + k / 2) % GZ_TILE_EDGE;
+				quarters |= 1U << gz_tile_phases[GZ_TILE_SQUARE]
+								[row * GZ_TILE_EDGE + column] /
+							  4;
+			}
+			assert_int_equal(quarters, 0xF);
+		}
+}
+
+static void only_longer_steps_are_interleaved(void **state)
+{
+	(void)state;
+	struct gz_foveation foveation = gz_foveation_default();
+	const struct gz_display display = gz_display_default(640, 360);
+	struct gz_plan plan = { 0 };
+	foveation.acuity_slope = 0.2;
+	for (int phase = 0; gz_step_phase_names[phase]; phase++) {
+		foveation.step_phase = phase;
+		assert_int_equal(gz_plan_make(&foveation, &display,
+					      (struct gz_point) { 0.5F, 0.5F }, 640, 360, &plan),
+				 GZ_OK);
+		assert_true(plan.steps[0] == 1 && plan.steps[1] > 1);
+		for (int lit = 0; lit < 2; lit++) {
+			assert_false(gz_plan_interleaves(&plan, 0, lit));
+			assert_int_equal(gz_plan_interleaves(&plan, 1, lit),
+					 phase == GZ_STEP_PHASE_INTERLEAVED ||
+						 (phase == GZ_STEP_PHASE_LIT && lit));
+		}
+	}
+	gz_plan_free(&plan);
+}
+
 TEST_SUITE(plan)
 {
 	const struct CMUnitTest tests[] = {
@@ -432,6 +479,8 @@ TEST_SUITE(plan)
 		cmocka_unit_test(rectangles_are_nested_and_as_fine_as_the_tiles),
 		cmocka_unit_test(rectangles_are_coarser_away_from_the_gaze),
 		cmocka_unit_test(each_method_is_planned_in_one_way_and_found_by_its_name),
+		cmocka_unit_test(phases_of_a_tile_are_sixteen_and_neighbours_share_no_quarter),
+		cmocka_unit_test(only_longer_steps_are_interleaved),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,6 +26,7 @@ static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 		bool counts[GZ_METHOD_COUNT]; /* standard mdc ddc acuity mdc3 uniform table */
 	} cases[] = {
 		{ "foveation.blend_px", { 0, 1, 1, 0, 1, 0, 0 } },
+		{ "foveation.step_phase", { 0, 0, 0, 1, 0, 0, 1 } },
 		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1 } },
 		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0 } },
 		{ "foveation.table",

@@ -169,6 +169,14 @@ static bool by_acuity(const struct gz_scene_settings *settings)
 	       settings->foveation.step_rule == GZ_STEP_ACUITY;
 }
 
+static bool with_longer_steps(const struct gz_scene_settings *settings)
+{
+	const int rule = settings->foveation.step_rule;
+	return rule == GZ_STEP_METHOD
+		       ? gz_method_of(&settings->foveation)->own_steps != GZ_STEPS_ONE
+		       : rule != GZ_STEP_NONE;
+}
+
 static bool by_distance(const struct gz_scene_settings *settings)
 {
 	return settings->foveation.step_rule == GZ_STEP_DISTANCE;
@@ -240,6 +248,7 @@ static const struct {
 	{ "render.levels", by_samples },
 	{ "render.jitter", by_raycast },
 	{ "render.early_termination", by_samples },
+	{ "foveation.step_phase", with_longer_steps },
 	{ "foveation.reconstruction", with_a_pyramid },
 	{ "foveation.acuity_", by_acuity },
 	{ "foveation.blend_px", with_borders },

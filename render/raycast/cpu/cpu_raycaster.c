@@ -127,6 +127,7 @@ struct cast_job {
 	struct sample_count *counts;
 	struct tile_offsets offsets[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
 	int jitter; /* seed */
+	bool lit;   /* surfaces */
 };
 
 static struct cpu_raycaster *cpu_of(struct gz_raycaster *raycaster)
@@ -397,10 +398,13 @@ static void fill_cast_tile(const struct cast_job *job, const struct gz_tile *til
 	const int x = tile->x - job->plan->view.shift[0], y = tile->y - job->plan->view.shift[1];
 	out_rays->step = tile->step;
 	out_rays->active = gz_plan_tile_active(job->plan, tile);
+	const float phase = gz_plan_interleaves(job->plan, tile->step, job->lit)
+				    ? 1.0F / GZ_TILE_PHASE_COUNT
+				    : 0;
 	for (int i = 0; i < GZ_TILE_RAYS; i++) {
 		out_rays->x[i] = (float)x + offsets->x[i];
 		out_rays->y[i] = (float)y + offsets->y[i];
-		out_rays->jitter[i] = 0;
+		out_rays->jitter[i] = phase * gz_tile_phases[tile->pattern][i];
 	}
 	for (int i = 0; job->jitter != 0 && i < GZ_TILE_RAYS; i++)
 		out_rays->jitter[i] =
@@ -600,6 +604,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 		.tile = cpu->kernels->tile[variant][cpu->volume->type][nearest],
 		.counts = cpu->counts,
 		.jitter = rays->jitter,
+		.lit = gz_ray_params_lit(rays),
 	};
 	result = fill_casts(cpu, camera, &ray_frame, rays, &job);
 	if (result == GZ_OK && cpu->volume->bricks)

@@ -78,7 +78,7 @@ struct gz_gl_cast_block {
 	float arriving_scale[4], arriving_bias[4];   /**< the same for the grid of shadows */
 	float arriving_last[4];
 	uint32_t jitter[4];                /**< seed of gz_ray_jitter(); the plan's shift, px */
-	float steps[GZ_PLAN_STEPS_MAX][4]; /**< world units, voxel lengths */
+	float steps[GZ_PLAN_STEPS_MAX][4]; /**< world units, voxel lengths, steps a phase */
 	uint32_t brick_table[4]; /**< number of the level's first brick; of bricks from one to the
 				    next along y, z */
 	float brick_last[4];     /**< greatest number of a brick along each axis */

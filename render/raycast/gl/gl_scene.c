@@ -484,6 +484,9 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
 		block->steps[i][0] = (float)(length * voxel_length);
 		block->steps[i][1] = (float)length;
+		block->steps[i][2] = gz_plan_interleaves(plan, i, gz_ray_params_lit(rays))
+					     ? 1.0F / GZ_TILE_PHASE_COUNT
+					     : 0;
 	}
 }
 

@@ -59,6 +59,7 @@ static void fill_plan_block(const struct gz_plan *plan, struct gz_gl_plan_block 
 	for (int i = 0; i < GZ_GL_TILE_POINTS; i++) {
 		block->tile_points[i][0] = gz_tile_columns[i / RAYS][i % RAYS];
 		block->tile_points[i][1] = gz_tile_rows[i % RAYS];
+		block->tile_points[i][2] = gz_tile_phases[i / RAYS][i % RAYS];
 	}
 }
 

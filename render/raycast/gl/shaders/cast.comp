@@ -48,11 +48,11 @@ bool any_of_warp(bool so)
 #endif
 }
 
-// gz_ray_jitter() of render/raycast/shared/ray_params.h, which explains it.
-float jitter_of(uvec2 pixel)
+// gz_ray_jitter() of render/raycast/shared/ray_params.h, which explains it; without a seed the ray's phase.
+float jitter_of(uvec2 pixel, float phase)
 {
 	if (jitter.x == 0U)
-		return 0.0;
+		return phase;
 	uvec3 word = uvec3(pixel - jitter.yz, jitter.x) * GZ_JITTER_MULTIPLIER + GZ_JITTER_INCREMENT;
 	word.x += word.y * word.z;
 	word.y += word.z * word.x;
@@ -64,9 +64,9 @@ float jitter_of(uvec2 pixel)
 
 // Cuts a ray by the whole box and by the shown part of it. Segments are counted from a jitter before the box.
 #ifdef HITS
-Ray set_up_ray(uvec2 at, float step_length, float hit_depth)
+Ray set_up_ray(uvec2 at, float step_length, float phase, float hit_depth)
 #else
-Ray set_up_ray(uvec2 at, float step_length)
+Ray set_up_ray(uvec2 at, float step_length, float phase)
 #endif
 {
 	vec2 pixel = vec2(at);
@@ -86,7 +86,7 @@ Ray set_up_ray(uvec2 at, float step_length)
 #ifdef HITS
 	leave = min(leave, hit_depth / step_length);
 #endif
-	float shift = jitter_of(at);
+	float shift = jitter_of(at, phase);
 	bool hit = enter < leave;
 	float from = hit ? enter - box_at + shift : 0.0, to = hit ? leave - box_at + shift : 0.0;
 	ray.first = ceil(from);
@@ -279,14 +279,16 @@ void main()
 	Tile tile = unpack_tile(tiles[index]);
 	if (tile.detail != detail || (tile.active_rays >> ray_index & 1U) == 0U)
 		return;
-	uvec2 at = tile.at + tile_points[tile.pattern * TILE_RAYS + ray_index].xy * layers[tile.layer].w;
+	uvec3 point = tile_points[tile.pattern * TILE_RAYS + ray_index].xyz;
+	uvec2 at = tile.at + point.xy * layers[tile.layer].w;
 	read_frame();
 	vec2 step_lengths = steps[tile.step].xy;
+	float phase = steps[tile.step].z * float(point.z);
 #ifdef HITS
 	uvec2 met = hits[index * uint(TILE_RAYS) + ray_index];
-	Ray ray = set_up_ray(at, step_lengths.x, uintBitsToFloat(met.x));
+	Ray ray = set_up_ray(at, step_lengths.x, phase, uintBitsToFloat(met.x));
 #else
-	Ray ray = set_up_ray(at, step_lengths.x);
+	Ray ray = set_up_ray(at, step_lengths.x, phase);
 #endif
 	Light light = Light(vec3(0.0), 1.0);
 #ifdef SHADED
