@@ -175,7 +175,9 @@ static uint64_t cube_of(const struct gz_mesh *mesh, size_t vertex, double edge)
 	uint64_t cube = 0;
 	int facing = 0;
 	for (int axis = 0; axis < 3; axis++) {
-		const double place = floor((double)mesh->positions[vertex][axis] / edge);
+		const double place = /* and no overflow, whatever the mesh */
+			fmin(fmax(floor((double)mesh->positions[vertex][axis] / edge), -0x1p40),
+			     0x1p40);
 		cube = cube << 20 | ((uint64_t)(int64_t)place & 0xFFFFF);
 		facing = fabsf(normal[axis]) > fabsf(normal[facing]) ? axis : facing;
 	}
@@ -216,7 +218,7 @@ static size_t list_coarse_triangles(const struct gz_mesh *mesh, const uint32_t *
 	return count;
 }
 
-/* The weight of what agrees in a tensor across a normal, and its direction. */
+/* The weight of what agrees in a tensor across a normal, and its direction; 0 without a normal. */
 static float find_direction(const float tensor[FIELD_FLOATS], const float normal[3], float out[3])
 {
 	const int least = fabsf(normal[0]) < fabsf(normal[1])
@@ -226,6 +228,9 @@ static float find_direction(const float tensor[FIELD_FLOATS], const float normal
 	axis[least] = 1;
 	cross_of(normal, axis, right);
 	const float length = sqrtf(dot_of(right, right));
+	memset(out, 0, 3 * sizeof *out);
+	if (!(length > 0)) /* no normal */
+		return 0;
 	for (int i = 0; i < 3; i++)
 		right[i] /= length;
 	cross_of(normal, right, up);

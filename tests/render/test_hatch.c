@@ -360,8 +360,9 @@ static void directions_of_noise_are_those_around_it(void **state)
 	/* A tube along y of which two vertices of three bend at random: noise cancels out. */
 	const struct gz_mesh *mesh = &meshes[DRAWN_BOARD];
 	struct gz_curvature *curvatures = calloc(mesh->vertex_count, sizeof *curvatures);
-	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
+	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions), place[3];
 	assert_true(curvatures && directions);
+	memcpy(place, mesh->positions[7], sizeof place);
 	for (size_t i = 0; i < mesh->vertex_count; i++) {
 		const double noise = (double)(gz_mixed_bits(5, i) >> 11) * 0x1p-53;
 		const double angle = gz_mixed_bits(6, i) % 3 ? 3.14159265 * noise : 0;
@@ -375,6 +376,14 @@ static void directions_of_noise_are_those_around_it(void **state)
 		least = fmin(least, fabs((double)directions[i][1]));
 	if (least < 0.96)
 		fail_msg("a direction is %.1f degrees off", acos(least) * 180 / 3.14159265);
+	/* a vertex without a normal has no direction, and one out of this world does no harm */
+	memset(mesh->normals[7], 0, sizeof mesh->normals[7]);
+	mesh->positions[7][0] = 1e37F;
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 1, directions), GZ_OK);
+	for (int axis = 0; axis < 3; axis++)
+		assert_true(directions[7][axis] == 0 && isfinite(directions[8][axis]));
+	memcpy(mesh->normals[7], mesh->normals[8], sizeof mesh->normals[7]);
+	memcpy(mesh->positions[7], place, sizeof place);
 	free(curvatures);
 	free(directions);
 }
