@@ -9,9 +9,11 @@ enum {
 	BLOCK = 8,      /* pixels at once; rows may be written so far beyond their end */
 };
 
-enum gz_result gz_stipple_sheet_clear(struct gz_stipple_sheet *sheet, int width, int height)
+enum gz_result gz_stipple_sheet_clear_strip(struct gz_stipple_sheet *sheet, int width, int top,
+					    int height)
 {
-	if (width < 1 || height < 1 || width > GZ_IMAGE_SIDE_MAX || height > GZ_IMAGE_SIDE_MAX)
+	if (width < 1 || height < 1 || top < 0 || width > GZ_STIPPLE_SIDE_MAX ||
+	    height > GZ_STIPPLE_SIDE_MAX || top > GZ_STIPPLE_SIDE_MAX - height)
 		return GZ_ERR_INVAL;
 	const size_t stride = (size_t)(width + BLOCK + 63) / 64 * 64;
 	const size_t size = stride * (size_t)height;
@@ -34,8 +36,16 @@ enum gz_result gz_stipple_sheet_clear(struct gz_stipple_sheet *sheet, int width,
 	sheet->width = width;
 	sheet->height = height;
 	sheet->stride = stride;
+	sheet->top = top;
 	memset(sheet->ink, 0, size);
 	return GZ_OK;
+}
+
+enum gz_result gz_stipple_sheet_clear(struct gz_stipple_sheet *sheet, int width, int height)
+{
+	if (width > GZ_IMAGE_SIDE_MAX || height > GZ_IMAGE_SIDE_MAX)
+		return GZ_ERR_INVAL;
+	return gz_stipple_sheet_clear_strip(sheet, width, 0, height);
 }
 
 /* Rows [from, to) of a sheet that a mark touches. */
@@ -43,14 +53,20 @@ struct row_range {
 	int from, to;
 };
 
-static struct row_range rows_between(float least, float greatest, int height)
+/* Those of [from, to) between two places. */
+static struct row_range rows_between(float least, float greatest, struct row_range all)
 {
-	struct row_range range = { 0, 0 };
-	if (!(greatest >= 0) || !(least <= (float)(height - 1)))
+	struct row_range range = { all.from, all.from };
+	if (!(greatest >= (float)all.from) || !(least <= (float)(all.to - 1)))
 		return range; /* also if a number is NaN */
-	range.from = least > 0 ? (int)ceilf(least) : 0;
-	range.to = greatest < (float)(height - 1) ? (int)greatest + 1 : height;
+	range.from = least > (float)all.from ? (int)ceilf(least) : all.from;
+	range.to = greatest < (float)(all.to - 1) ? (int)greatest + 1 : all.to;
 	return range;
+}
+
+static struct row_range rows_of_sheet(const struct gz_stipple_sheet *sheet)
+{
+	return (struct row_range) { sheet->top, sheet->top + sheet->height };
 }
 
 /* How far the rim of a disc reaches: where its ink of ink_of_disc() ends. */
@@ -59,11 +75,11 @@ static float disc_reach(float radius)
 	return sqrtf(radius * radius + radius);
 }
 
-static struct row_range rows_of_disc(const void *marks, size_t number, int height)
+static struct row_range rows_of_disc(const void *marks, size_t number, struct row_range all)
 {
 	const struct gz_stipple_disc *disc = (const struct gz_stipple_disc *)marks + number;
 	const float reach = disc_reach(disc->radius);
-	return rows_between(disc->y - reach, disc->y + reach, height);
+	return rows_between(disc->y - reach, disc->y + reach, all);
 }
 
 /* How far a piece reaches across its line. */
@@ -72,17 +88,17 @@ static float piece_reach(const struct gz_stipple_piece *piece)
 	return fmaxf(piece->from_width, piece->to_width) / 2 + 0.5F;
 }
 
-static struct row_range rows_of_piece(const void *marks, size_t number, int height)
+static struct row_range rows_of_piece(const void *marks, size_t number, struct row_range all)
 {
 	const struct gz_stipple_piece *piece = (const struct gz_stipple_piece *)marks + number;
 	const float reach = piece_reach(piece);
 	return rows_between(fminf(piece->from[1], piece->to[1]) - reach,
-			    fmaxf(piece->from[1], piece->to[1]) + reach, height);
+			    fmaxf(piece->from[1], piece->to[1]) + reach, all);
 }
 
 /* A kind of marks: which rows each touches, and how it is drawn there. */
 struct mark_kind {
-	struct row_range (*rows)(const void *marks, size_t number, int height);
+	struct row_range (*rows)(const void *marks, size_t number, struct row_range all);
 	void (*draw)(struct gz_stipple_sheet *sheet, const void *marks, size_t number,
 		     struct row_range within);
 };
@@ -101,8 +117,8 @@ static size_t count_bands(const struct gz_stipple_sheet *sheet)
 /* The rows of a band that a mark touches. */
 static struct row_range rows_in_band(const struct mark_job *job, size_t mark, size_t band)
 {
-	struct row_range rows = job->kind->rows(job->marks, mark, job->sheet->height);
-	const int from = (int)band * BAND_ROWS;
+	struct row_range rows = job->kind->rows(job->marks, mark, rows_of_sheet(job->sheet));
+	const int from = job->sheet->top + (int)band * BAND_ROWS;
 	rows.from = rows.from > from ? rows.from : from;
 	rows.to = rows.to < from + BAND_ROWS ? rows.to : from + BAND_ROWS;
 	return rows;
@@ -138,8 +154,9 @@ static enum gz_result list_bands(const struct mark_job *job, size_t count)
 	size_t *ends = sheet->band_ends, sum = 0;
 	memset(ends, 0, count_bands(sheet) * sizeof *ends);
 	for (size_t i = 0; i < count; i++) {
-		const struct row_range rows = job->kind->rows(job->marks, i, sheet->height);
-		for (int band = rows.from / BAND_ROWS; band * BAND_ROWS < rows.to; band++)
+		const struct row_range rows = job->kind->rows(job->marks, i, rows_of_sheet(sheet));
+		for (int band = (rows.from - sheet->top) / BAND_ROWS;
+		     band * BAND_ROWS < rows.to - sheet->top; band++)
 			ends[band]++;
 	}
 	for (size_t band = 0; band < count_bands(sheet); band++) {
@@ -149,8 +166,9 @@ static enum gz_result list_bands(const struct mark_job *job, size_t count)
 	}
 	const enum gz_result result = reserve_band_marks(sheet, sum);
 	for (size_t i = 0; result == GZ_OK && i < count; i++) {
-		const struct row_range rows = job->kind->rows(job->marks, i, sheet->height);
-		for (int band = rows.from / BAND_ROWS; band * BAND_ROWS < rows.to; band++)
+		const struct row_range rows = job->kind->rows(job->marks, i, rows_of_sheet(sheet));
+		for (int band = (rows.from - sheet->top) / BAND_ROWS;
+		     band * BAND_ROWS < rows.to - sheet->top; band++)
 			sheet->band_marks[ends[band]++] = (uint32_t)i;
 	}
 	return result;
@@ -176,7 +194,7 @@ static enum gz_result add_marks(struct mark_job *job, size_t count, struct gz_wo
 static struct row_range columns_between(const struct gz_stipple_sheet *sheet, float least,
 					float greatest)
 {
-	return rows_between(least, greatest, sheet->width);
+	return rows_between(least, greatest, (struct row_range) { 0, sheet->width });
 }
 
 static void add_ink(uint8_t ink[BLOCK], const float shares[BLOCK])
@@ -228,8 +246,8 @@ static void draw_disc(struct gz_stipple_sheet *sheet, const void *marks, size_t 
 	const struct row_range columns = columns_between(sheet, disc->x - reach, disc->x + reach);
 	for (int y = within.from; y < within.to; y++) {
 		const float dy = (float)y - disc->y;
-		draw_disc_row(sheet->ink + (size_t)y * sheet->stride, columns, disc->x,
-			      frame.middle - frame.slope * dy * dy, &frame);
+		draw_disc_row(sheet->ink + (size_t)(y - sheet->top) * sheet->stride, columns,
+			      disc->x, frame.middle - frame.slope * dy * dy, &frame);
 	}
 }
 
@@ -271,7 +289,7 @@ static void draw_piece(struct gz_stipple_sheet *sheet, const void *marks, size_t
 		columns_between(sheet, fminf(piece->from[0], piece->to[0]) - reach,
 				fmaxf(piece->from[0], piece->to[0]) + reach);
 	for (int y = within.from; y < within.to; y++) {
-		uint8_t *row = sheet->ink + (size_t)y * sheet->stride;
+		uint8_t *row = sheet->ink + (size_t)(y - sheet->top) * sheet->stride;
 		for (int x = columns.from; x < columns.to; x += BLOCK) {
 			float shares[BLOCK];
 			for (int i = 0; i < BLOCK; i++)

@@ -33,9 +33,10 @@ struct gz_stipple_piece {
 /** Largest radius of a disc and width of a line, px. */
 #define GZ_STIPPLE_MARK_MAX_PX 1024
 
-/** A sheet. Zero-initialised is empty; keep it from frame to frame. */
+/** A sheet, or a strip of one. Zero-initialised is empty; keep it from frame to frame. */
 struct gz_stipple_sheet {
 	int width, height;
+	int top;       /**< the picture's row that is the first one here; 0 of a whole sheet */
 	size_t stride; /**< bytes from row to row */
 	uint8_t *ink;  /**< of each pixel: 0 paper to 255 ink */
 	size_t capacity;
@@ -55,6 +56,22 @@ struct gz_stipple_sheet {
  * @retval GZ_ERR_NO_MEM  not logged; the sheet is unchanged
  */
 enum gz_result gz_stipple_sheet_clear(struct gz_stipple_sheet *sheet, int width, int height);
+
+/** Longest side of a picture that is drawn in strips, px. Chosen: places are still told apart by
+ * less than 1/100 px. */
+#define GZ_STIPPLE_SIDE_MAX 131072
+
+/**
+ * Make a sheet a white strip of a larger picture: rows @p top to @p top + @p rows - 1. Marks that
+ * are added have their places in the picture, and each pixel gets the ink that it has on a whole
+ * sheet.
+ *
+ * @param width      px, 1 to GZ_STIPPLE_SIDE_MAX
+ * @param top, rows  0 or more, and 1 or more; their sum at most GZ_STIPPLE_SIDE_MAX
+ * @return as gz_stipple_sheet_clear()
+ */
+enum gz_result gz_stipple_sheet_clear_strip(struct gz_stipple_sheet *sheet, int width, int top,
+					    int rows);
 
 /**
  * Add discs.

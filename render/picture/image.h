@@ -61,6 +61,29 @@ enum gz_result gz_image_write_png_with(const struct gz_image *image,
 				       const struct gz_image_text *texts, size_t count,
 				       const char *path, const struct gz_log *log);
 
+/** A grey picture whose rows are made as they are written, so that it need not fit into memory. */
+struct gz_image_rows {
+	int width, height; /**< 1 to GZ_IMAGE_ROWS_MAX */
+	/** Make row @p y, @p width bytes, 0 black to 255 white. Called once for each row, in their
+	 *  order. A failure ends the file, and no regular file is left. */
+	enum gz_result (*make)(void *user, int y, uint8_t *out_greys);
+	void *user;
+};
+
+/** Longest side of such a picture. Chosen: libpng writes no larger ones unless it is told to. */
+#define GZ_IMAGE_ROWS_MAX 1000000
+
+/**
+ * Write a grey PNG of 8 bits; the file is treated as by gz_image_write_png().
+ *
+ * @retval GZ_ERR_INVAL   a side is out of range; not logged
+ * @retval GZ_ERR_NO_MEM  no memory for a row; not logged
+ * @retval GZ_ERR_IO      the disk is full, there is no such folder, …; logged
+ * @return otherwise what make() returns; not logged
+ */
+enum gz_result gz_image_write_grey_png(const struct gz_image_rows *rows, const char *path,
+				       const struct gz_log *log);
+
 /**
  * Read any PNG as RGBA; alpha becomes 255. A gamma that the file states is followed; without one it
  * is sRGB, with 16 bits too.

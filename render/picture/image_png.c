@@ -28,11 +28,14 @@ static void ignore_png_warning(png_structp png, png_const_charp message)
 	(void)message;
 }
 
-/* What is written to a file. */
+/* What is written to a file: an image, or rows that are made. */
 struct content {
 	const struct gz_image *image;
 	const struct gz_image_text *texts;
 	size_t text_count;
+	const struct gz_image_rows *rows; /* NULL: the image */
+	uint8_t *greys;                   /* room for one of them */
+	enum gz_result *made;             /* the first failure of them */
 };
 
 static void set_texts(png_structp png, png_infop info, const struct content *content)
@@ -47,6 +50,31 @@ static void set_texts(png_structp png, png_infop info, const struct content *con
 	}
 }
 
+static void write_header(png_structp png, png_infop info, const struct content *content)
+{
+	const bool grey = content->rows;
+	const int width = grey ? content->rows->width : content->image->width;
+	const int height = grey ? content->rows->height : content->image->height;
+	png_set_compression_level(png, PNG_COMPRESSION_LEVEL);
+	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
+	png_set_IHDR(png, info, (png_uint_32)width, (png_uint_32)height, 8,
+		     grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+		     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+	set_texts(png, info, content);
+	png_write_info(png, info);
+}
+
+static bool write_grey_rows(png_structp png, const struct content *content)
+{
+	for (int y = 0; y < content->rows->height; y++) {
+		*content->made = content->rows->make(content->rows->user, y, content->greys);
+		if (*content->made != GZ_OK)
+			return false;
+		png_write_row(png, content->greys);
+	}
+	return true;
+}
+
 /* Changes no local variable after setjmp, so that longjmp leaves none undefined. */
 static bool write_rows(png_structp png, png_infop info, FILE *file, const struct content *content)
 {
@@ -54,16 +82,15 @@ static bool write_rows(png_structp png, png_infop info, FILE *file, const struct
 	if (setjmp(png_jmpbuf(png)))
 		return false;
 	png_init_io(png, file);
-	png_set_compression_level(png, PNG_COMPRESSION_LEVEL);
-	png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
-	png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
-		     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-		     PNG_FILTER_TYPE_DEFAULT);
-	set_texts(png, info, content);
-	png_write_info(png, info);
-	png_set_filler(png, 0, PNG_FILLER_AFTER); /* leaves out A of each pixel */
-	for (int y = 0; y < image->height; y++)
-		png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
+	write_header(png, info, content);
+	if (content->rows) {
+		if (!write_grey_rows(png, content))
+			return false;
+	} else {
+		png_set_filler(png, 0, PNG_FILLER_AFTER); /* leaves out A of each pixel */
+		for (int y = 0; y < image->height; y++)
+			png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 4);
+	}
 	png_write_end(png, NULL);
 	return true;
 }
@@ -137,20 +164,45 @@ enum gz_result gz_image_write_png(const struct gz_image *image, const char *path
 	return gz_image_write_png_with(image, NULL, 0, path, log);
 }
 
+static enum gz_result write_content(const struct content *content, const char *path,
+				    const struct gz_log *log)
+{
+	struct stat status;
+	bool special = stat(path, &status) == 0 && !S_ISREG(status.st_mode);
+	if (special ? write_special(content, path) : write_regular(content, path))
+		return GZ_OK;
+	if (content->made && *content->made != GZ_OK)
+		return *content->made;
+	gz_err(log, "%s: cannot write the picture: %s; name a writable folder with free space",
+	       path, strerror(errno));
+	return GZ_ERR_IO;
+}
+
 enum gz_result gz_image_write_png_with(const struct gz_image *image,
 				       const struct gz_image_text *texts, size_t count,
 				       const char *path, const struct gz_log *log)
 {
-	const struct content content = { image, texts, count };
-	struct stat status;
+	const struct content content = { .image = image, .texts = texts, .text_count = count };
 	if (!image->pixels || image->width < 1 || image->height < 1)
 		return GZ_ERR_INVAL;
-	bool special = stat(path, &status) == 0 && !S_ISREG(status.st_mode);
-	if (special ? write_special(&content, path) : write_regular(&content, path))
-		return GZ_OK;
-	gz_err(log, "%s: cannot write the picture: %s; name a writable folder with free space",
-	       path, strerror(errno));
-	return GZ_ERR_IO;
+	return write_content(&content, path, log);
+}
+
+enum gz_result gz_image_write_grey_png(const struct gz_image_rows *rows, const char *path,
+				       const struct gz_log *log)
+{
+	enum gz_result made = GZ_OK;
+	if (rows->width < 1 || rows->height < 1 || rows->width > GZ_IMAGE_ROWS_MAX ||
+	    rows->height > GZ_IMAGE_ROWS_MAX)
+		return GZ_ERR_INVAL;
+	const struct content content = { .rows = rows,
+					 .greys = malloc((size_t)rows->width),
+					 .made = &made };
+	if (!content.greys)
+		return GZ_ERR_NO_MEM;
+	const enum gz_result result = write_content(&content, path, log);
+	free(content.greys);
+	return result;
 }
 
 static enum gz_result check_png_size(const png_image *png, const char *path,

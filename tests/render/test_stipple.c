@@ -10,10 +10,12 @@
 #include "base/workers.h"
 #include "drawn_meshes.h"
 #include "render/illustration/cached_points.h"
+#include "render/illustration/stipple_png.h"
 #include "render/illustration/stipple_points.h"
 #include "render/illustration/stipple_sheet.h"
 #include "render/illustration/stipple_svg.h"
 #include "render/illustration/stipple_tone.h"
+#include "render/mesh/point_grid.h"
 
 enum { POINTS = 40000, EDGE = 200 };
 
@@ -552,6 +554,65 @@ static void darker_tones_ask_for_denser_discs(void **state)
 
 /* The file of the points of a folder; the second time they are read from it, and a file of another
  * mesh is not used. */
+/* All bytes of a file. */
+static size_t read_bytes(const char *path, char *out, size_t size)
+{
+	FILE *file = fopen(path, "rb");
+	assert_non_null(file);
+	const size_t count = fread(out, 1, size, file);
+	assert_in_range(count, 1, size - 1);
+	(void)fclose(file);
+	return count;
+}
+
+static void strips_make_the_same_picture_bit_for_bit(void **state)
+{
+	(void)state;
+	enum { WIDE = 150, HIGH = 131, DISCS = 300 };
+	static const int heights[5] = { HIGH, 1, 32, 50, 1000 };
+	static char whole[1 << 16], strips[1 << 16];
+	struct gz_stipple_disc discs[DISCS];
+	const struct gz_stipple_piece pieces[2] = { { { -5, 3 }, { 140, 125 }, 1, 7 },
+						    { { 140, 125 }, { 60, 90.5F }, 7, 0 } };
+	char path[] = "/tmp/gazecast_strips_XXXXXX.png";
+	for (size_t i = 0; i < DISCS; i++) {
+		const double x = (double)(gz_mixed_bits(1, i) >> 11) * 0x1p-53;
+		const double y = (double)(gz_mixed_bits(2, i) >> 11) * 0x1p-53;
+		discs[i] = (struct gz_stipple_disc) { (float)(x * 170 - 10), (float)(y * 151 - 10),
+						      i % 50 ? 1.3F : 20 };
+	}
+	const struct gz_stipple_marks marks = { discs, DISCS, pieces, 2 };
+	const int fd = mkstemps(path, 4);
+	assert_true(fd >= 0);
+	close(fd);
+	size_t bytes = 0;
+	for (int i = 0; i < 5; i++) {
+		assert_int_equal(gz_stipple_write_png(&marks, (const int[2]) { WIDE, HIGH },
+						      heights[i], NULL, path, NULL),
+				 GZ_OK);
+		if (i == 0)
+			bytes = read_bytes(path, whole, sizeof whole);
+		assert_int_equal(read_bytes(path, strips, sizeof strips), bytes);
+		assert_memory_equal(strips, whole, bytes);
+	}
+	/* and it is the picture of a sheet */
+	struct gz_image read = { 0 }, drawn = { 0 };
+	struct gz_stipple_sheet sheet = { 0 };
+	assert_int_equal(gz_stipple_sheet_clear(&sheet, WIDE, HIGH), GZ_OK);
+	assert_int_equal(gz_stipple_sheet_add_discs(&sheet, discs, DISCS, NULL), GZ_OK);
+	assert_int_equal(gz_stipple_sheet_add_pieces(&sheet, pieces, 2, NULL), GZ_OK);
+	assert_int_equal(gz_stipple_sheet_to_image(&sheet, &drawn), GZ_OK);
+	assert_int_equal(gz_image_read_png(path, NULL, &read), GZ_OK);
+	assert_memory_equal(read.pixels, drawn.pixels, (size_t)4 * WIDE * HIGH);
+	assert_int_equal(
+		gz_stipple_write_png(&marks, (const int[2]) { WIDE, 0 }, 32, NULL, path, NULL),
+		GZ_ERR_INVAL);
+	unlink(path);
+	gz_image_free(&read);
+	gz_image_free(&drawn);
+	gz_stipple_sheet_free(&sheet);
+}
+
 static void points_are_kept_beside_the_input(void **state)
 {
 	(void)state;
@@ -651,6 +712,7 @@ TEST_SUITE(stipple)
 		cmocka_unit_test(disc_adds_as_much_ink_as_its_area),
 		cmocka_unit_test(marks_at_the_border_stay_on_the_sheet),
 		cmocka_unit_test(darker_tones_ask_for_denser_discs),
+		cmocka_unit_test(strips_make_the_same_picture_bit_for_bit),
 		cmocka_unit_test(points_are_kept_beside_the_input),
 		cmocka_unit_test(print_is_an_svg_in_millimetres),
 		cmocka_unit_test(print_that_cannot_be_written_is_refused),
