@@ -61,9 +61,21 @@ its stream, and requests to the daemon.")
 gz_deb(development libgazecast-dev libdevel "latest gaze of an eye tracker, for programs: development files"
 "Programs that draw what somebody looks at link the library libgazecast: it
 gives the latest gaze of the eye tracker that the daemon gazed reads, every
-message of its stream, and requests to the daemon.
+message of its stream, and requests to the daemon. Those that show volumes
+link libgazecast-render, whose pictures are sharp where somebody looks.
 .
-This package holds the headers, the pkg-config file and the manual page.")
+This package holds the headers, the pkg-config files and the manual page.")
+gz_deb(render libgazecast-render${PROJECT_VERSION_MAJOR} libs "foveated volume renderer, for programs"
+"Programs that show volumes link this library: a volume, a transfer function, a
+camera and a gaze become a picture that is sharp where somebody looks. It runs
+on the processor and on graphics cards (OpenGL 4.3), without a window.")
+gz_deb(python python3-gazecast python "gaze, recordings and foveated rendering in Python"
+"Gives programs in Python the latest gaze of an eye tracker and the stream of
+the daemon gazed, recordings of many eye trackers as numpy record arrays with
+labels and events, and pictures of volumes that are sharp where somebody looks.
+.
+The module calls the libraries of Gazecast and has no compiled code of its own.")
+gz_deb_symbols(gazecast-render libgazecast-render${PROJECT_VERSION_MAJOR} "${PROJECT_SOURCE_DIR}/render/library/render.map")
 gz_deb_symbols(gazecast libgazecast${PROJECT_VERSION_MAJOR} "${PROJECT_SOURCE_DIR}/client/gazecast.map")
 set(debian_files "${PROJECT_BINARY_DIR}/debian")
 
@@ -91,11 +103,19 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "mricron-data, ffmpeg, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "invesalius-examples")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA "${debian}/postinst;${debian}/prerm;${debian}/postrm;${debian}/conffiles")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), python3-numpy, libgazecast${PROJECT_VERSION_MAJOR} (>= ${PROJECT_VERSION}), libgazecast-render${PROJECT_VERSION_MAJOR} (>= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "gazecast")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-nibabel, python3-psychopy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${debian}/python/postinst;${debian}/python/prerm")
+set(CPACK_DEBIAN_RENDER_PACKAGE_CONTROL_EXTRA "${debian_files}/libgazecast-render${PROJECT_VERSION_MAJOR}/symbols"
+	"${debian_files}/libgazecast-render${PROJECT_VERSION_MAJOR}/shlibs" "${debian_files}/libgazecast-render${PROJECT_VERSION_MAJOR}/triggers")
+set(CPACK_DEBIAN_RENDER_PACKAGE_MULTIARCH same)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${debian_files}/libgazecast${PROJECT_VERSION_MAJOR}/symbols"
 	"${debian_files}/libgazecast${PROJECT_VERSION_MAJOR}/shlibs" "${debian_files}/libgazecast${PROJECT_VERSION_MAJOR}/triggers")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_MULTIARCH same)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_MULTIARCH same)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgazecast${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libgazecast${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libgazecast-render${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION})")
 set(CPACK_PROJECT_CONFIG_FILE "${CMAKE_CURRENT_BINARY_DIR}/deb_settings.cmake")
-file(WRITE "${CPACK_PROJECT_CONFIG_FILE}" "set(GAZECAST_LIBRARY_COMPONENTS library)\n")
+file(WRITE "${CPACK_PROJECT_CONFIG_FILE}" "set(GAZECAST_LIBRARY_COMPONENTS library render)\n")
 include(CPack)

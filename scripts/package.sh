@@ -18,7 +18,8 @@ ask_lintian() {
 make_package_root() {
 	make_root && mkdir -p "$new_root/root/gazecast" "$new_root/packages" &&
 		cp "$package_build"/*.deb "$new_root/packages" &&
-		cp -a scripts "$new_root/root/gazecast"
+		cp -a scripts "$new_root/root/gazecast" &&
+		mkdir -p "$new_root/root/gazecast/tests" && cp -a tests/python "$new_root/root/gazecast/tests"
 }
 
 check_package() {

@@ -85,6 +85,12 @@ words=$(bash -c '. /usr/share/bash-completion/completions/gazectl; COMP_WORDS=(g
 	_gazectl; echo "${COMPREPLY[*]}"')
 [ "$words" = convert ] || fail "bash does not complete gazectl"
 
+# As root first: what it compiles must go with the package.
+python3 -c "import gazecast" || fail "Python does not find the module"
+as_visitor python3 gazecast/tests/python/test_gazecast.py - /usr/share/gazecast/scenes ||
+	fail "the Python module fails its tests"
+note "the Python module passed its tests"
+
 dpkg --purge "${ours[@]}" || fail "the packages cannot be purged"
 list_files >/tmp/after
 diff /tmp/before /tmp/after || fail "purging left or took something (above)"

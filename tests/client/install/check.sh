@@ -39,6 +39,19 @@ for name in $(cat "$place/declared"); do
 		fail "$name is declared in an installed header and not in the library: list it in client/gazecast.map"
 done
 
+# The renderer's library alone has what its header declares.
+cmake --install "$build" --component render --prefix "$place/prefix" >/dev/null
+# shellcheck disable=SC2046
+"$cc" -std=c17 -Wall -Wextra -Werror -o "$place/draw" "$source/tests/client/install/draw.c" \
+	$(pkg-config --cflags --libs gazecast-render)
+drawn=$(LD_LIBRARY_PATH=$(dirname "$(find "$place/prefix" -name libgazecast-render.so)") "$place/draw")
+[ "$drawn" = "64 x 48, 3072 rays" ] || fail "the program drew \"$drawn\""
+header=$(find "$place/prefix" -name render.h)
+sed -n 's/^[a-z].*[ *]\(gz_renderer_[a-z_]*\)(.*/\1/p' "$header" | sort >"$place/declared"
+nm -D --defined-only "$(find "$place/prefix" -name libgazecast-render.so)" | sed -n 's/.* T //p' |
+	grep -v '^gz_result_text$' | sort >"$place/shown"
+diff "$place/declared" "$place/shown" || fail "render.h declares (<) other than the library shows (>)"
+
 "$publisher" "ipc://$place/latest" &
 publisher_id=$!
 LD_LIBRARY_PATH=$(dirname "$library") timeout "${GZ_TEST_PATIENCE_S:-60}" "$place/reader" "ipc://$place/latest" >"$place/out"
