@@ -27,12 +27,12 @@ if(GAZECAST_FUZZ)
 endif()
 
 # gz_embed_texts(OUT PREFIX file...): each file as a C source that defines PREFIX<name>, an array of bytes with
-# a final NUL; <name> is the file's without folder, its dots underscores. OUT lists the sources.
+# a final NUL; <name> is the file's without folder, its dots and dashes underscores. OUT lists the sources.
 function(gz_embed_texts out prefix)
 	set(sources "")
 	foreach(file ${ARGN})
 		get_filename_component(name "${file}" NAME)
-		string(REPLACE "." "_" symbol "${prefix}${name}")
+		string(REGEX REPLACE "[.-]" "_" symbol "${prefix}${name}")
 		add_custom_command(
 			OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/${name}.c"
 			COMMAND "${CMAKE_COMMAND}" "-DIN=${CMAKE_CURRENT_SOURCE_DIR}/${file}"

@@ -50,9 +50,8 @@ static const struct gz_option request_options[] = {
 struct picture_stage {
 	struct gz_scene scene;
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
-	struct gz_illustrated each[GZ_SCENE_LISTED_MAX];
 	size_t count;
-	struct gz_shading_settings settings;
+	struct gz_illustration_look look;
 	struct gz_illustrate_caster *caster;
 	struct gz_plan plan;
 	struct gz_image image;
@@ -102,31 +101,20 @@ static enum gz_result resolve_settings(const struct picture_request *request,
 	return result;
 }
 
-/* The importance that the scene gives an object: the lowest byte of its number tells which. */
-static double importance_of(const struct gz_scene *scene, uint32_t id)
-{
-	const size_t place = (id & 255) - 2;
-	return id >= 2 && place < scene->settings.objects.count
-		       ? scene->settings.objects.items[place].importance
-		       : 0.5;
-}
-
 static enum gz_result set_up_stage(const struct picture_request *request, const char *path,
 				   const struct gz_log *log, struct picture_stage *stage)
 {
 	const struct gz_backend_params params = { .threads = request->threads };
 	enum gz_result result = gz_scene_load(path, NULL, log, &stage->scene);
 	if (result == GZ_OK)
-		result = resolve_settings(request, &stage->settings);
+		result = resolve_settings(request, &stage->look.single);
+	stage->look.source = GZ_ILLUSTRATION_SINGLE;
 	if (result == GZ_OK)
 		result = gz_illustrate_caster_create(&params, log, &stage->caster);
 	if (result != GZ_OK)
 		return result;
 	stage->count = gz_scene_list_objects(&stage->scene, stage->objects, GZ_SCENE_LISTED_MAX);
-	for (size_t i = 0; i < stage->count; i++)
-		stage->each[i].importance = importance_of(&stage->scene, stage->objects[i].id);
-	result =
-		gz_illustrate_caster_show(stage->caster, stage->objects, stage->each, stage->count);
+	result = gz_illustrate_caster_show(stage->caster, stage->objects, stage->count);
 	struct gz_foveation foveation = stage->scene.settings.foveation;
 	if (request->full)
 		foveation.method = gz_method_full();
@@ -148,7 +136,7 @@ static enum gz_result draw_runs(const struct picture_request *request, struct pi
 	const struct gz_illustrate_shot shot = {
 		.camera = &stage->scene.settings.camera,
 		.plan = &stage->plan,
-		.settings = &stage->settings,
+		.look = &stage->look,
 		.isovalue = stage->scene.settings.rays.surface.isovalue,
 	};
 	struct gz_frame_stats stats = { 0 };

@@ -21,6 +21,10 @@ const struct gz_option gz_illustration_look_options[] = {
 	  .preset = "combined",
 	  .help = "which settings count: the six combined ones, or the single ones of "
 		  "[shading_map]" },
+	{ "illustration.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "template that replaces combined settings: a name, or a file beside the scene or "
+		  "under $GAZECAST_DATA" },
 	{ "illustration.chosen_object", GZ_OPTION_STRING, AT(chosen_object), .max = GZ_NAME_SIZE,
 	  .preset = "", .help = "name of the object or label from which distances count" },
 };
@@ -88,11 +92,18 @@ static void set_weight(struct gz_shading_settings *settings, size_t which, doubl
 }
 
 void gz_illustration_look_resolve(const struct gz_illustration_look *look,
+				  const struct gz_shading_template *of_object,
 				  struct gz_shading_settings *out_settings)
 {
 	*out_settings = look->single;
-	if (look->source == GZ_ILLUSTRATION_COMBINED)
-		gz_illustration_apply(&look->combined, out_settings);
+	if (look->source == GZ_ILLUSTRATION_COMBINED) {
+		struct gz_illustration_settings combined = look->combined;
+		if (look->template_name[0])
+			gz_shading_template_apply(&look->shading_template, &combined);
+		if (of_object)
+			gz_shading_template_apply(of_object, &combined);
+		gz_illustration_apply(&combined, out_settings);
+	}
 	if (look->show == GZ_SHOW_SHADING)
 		return;
 	for (size_t i = 0; i < ALONE; i++)

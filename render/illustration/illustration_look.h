@@ -12,6 +12,7 @@
 #include "base/option.h"
 #include "base/sizes.h"
 #include "render/illustration/shading_settings.h"
+#include "render/illustration/shading_template.h"
 
 /** Which settings count. */
 enum gz_illustration_source {
@@ -31,6 +32,9 @@ struct gz_illustration_look {
 	int source;                       /**< enum gz_illustration_source */
 	int show;                         /**< enum gz_illustration_show, or a parameter */
 	char chosen_object[GZ_NAME_SIZE]; /**< from which distances count; empty: none */
+	char template_name[GZ_PATH_SIZE]; /**< gz_shading_template_named(), or a file; empty: none
+					   */
+	struct gz_shading_template shading_template; /**< what it names, once it is found */
 	struct gz_illustration_settings combined;
 	struct gz_shading_settings single;
 };
@@ -59,9 +63,15 @@ bool gz_illustration_look_valid(const struct gz_illustration_look *look);
 bool gz_illustration_look_same(const struct gz_illustration_look *a,
 			       const struct gz_illustration_look *b);
 
-/** The single settings of a picture: what the look's settings make, or, if one parameter is shown,
- *  that one alone over a flat surface, neither equalised nor with any other step. */
+/**
+ * The single settings of an object: what the look's settings make. Templates replace combined
+ * settings, that of the look first, then the object's. If one parameter is shown, it is alone over
+ * a flat surface, neither equalised nor with any other step.
+ *
+ * @param of_object  NULL: the object has no template
+ */
 void gz_illustration_look_resolve(const struct gz_illustration_look *look,
+				  const struct gz_shading_template *of_object,
 				  struct gz_shading_settings *out_settings);
 
 #endif

@@ -312,7 +312,8 @@ enum gz_result gz_shading_picture_compose(struct gz_shading_picture *picture,
 	begin_frame(&job, settings);
 	job.shared.out_pixels = out_pixels;
 	gz_workers_run(workers, reduce_part, &job, reduced);
-	make_curve(picture, (float)settings->equalisation);
+	if (!frame->keeps_curve)
+		make_curve(picture, (float)settings->equalisation);
 	if (picture->levels_most >= 0)
 		gz_workers_run(workers, blur_part, &job, reduced);
 	gz_workers_run(workers, compose_part, &job,

@@ -7,11 +7,13 @@
 #ifndef GZ_RENDER_ILLUSTRATION_SHADING_PICTURE_H
 #define GZ_RENDER_ILLUSTRATION_SHADING_PICTURE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "base/result.h"
 #include "base/workers.h"
+#include "render/illustration/shading_map.h"
 #include "render/illustration/shading_settings.h"
 
 /** What a frame found. All planes are width by height, row 0 on top; borrowed. Those of `void` hold
@@ -25,7 +27,11 @@ struct gz_shading_frame {
 					     its weight counts as 0 */
 	float near, far;                /**< of the scene, in the unit of depth; near < far */
 	const float *importances;       /**< of object 1 to @p objects, [0, 1]; others have 0 */
+	/** Of object 1 to @p objects, where they differ from the settings; those are the greatest
+	 * of each then. NULL: the settings' for all. */
+	const struct gz_shading_weights *weights;
 	size_t objects;
+	bool keeps_curve; /**< keep the tone curve of the frame before: of a layer behind that */
 };
 
 /** Room for the planes in between; keep it from frame to frame. */

@@ -1,6 +1,7 @@
 #include "render/illustration/shading_template.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #define AT(field) offsetof(struct gz_shading_template, field)
 
@@ -57,6 +58,45 @@ enum gz_result gz_shading_template_parse(const char *name, const char *text, siz
 	if (result == GZ_OK)
 		*out_template = read;
 	return result;
+}
+
+struct gz_shading_template gz_shading_template_empty(void)
+{
+	struct gz_shading_template empty;
+	struct gz_option_binding binding;
+	(void)begin_template(&empty, &binding);
+	return empty;
+}
+
+extern const char gz_template_bone_structures_template[], gz_template_information_template[],
+	gz_template_organs_template[], gz_template_single_bones_template[],
+	gz_template_vessel_trees_template[], gz_template_vessels_template[],
+	gz_template_whole_scene_template[];
+
+/* The files of etc/illustration/, as they were when the program was built. */
+static const struct {
+	const char *name, *text;
+} named_templates[] = {
+	{ "bone-structures", gz_template_bone_structures_template },
+	{ "information", gz_template_information_template },
+	{ "organs", gz_template_organs_template },
+	{ "single-bones", gz_template_single_bones_template },
+	{ "vessel-trees", gz_template_vessel_trees_template },
+	{ "vessels", gz_template_vessels_template },
+	{ "whole-scene", gz_template_whole_scene_template },
+};
+
+const char gz_shading_template_names[] =
+	"bone-structures, information, organs, single-bones, vessel-trees, vessels, whole-scene";
+
+enum gz_result gz_shading_template_named(const char *name, struct gz_shading_template *out_template)
+{
+	for (size_t i = 0; i < sizeof named_templates / sizeof named_templates[0]; i++)
+		if (strcmp(named_templates[i].name, name) == 0)
+			return gz_shading_template_parse(name, named_templates[i].text,
+							 strlen(named_templates[i].text), NULL,
+							 out_template);
+	return GZ_ERR_NOT_FOUND;
 }
 
 static void apply_level(int level, double *value)

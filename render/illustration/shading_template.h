@@ -58,6 +58,20 @@ enum gz_result gz_shading_template_parse(const char *name, const char *text, siz
 					 const struct gz_log *log,
 					 struct gz_shading_template *out_template);
 
+/** A template that names nothing. */
+struct gz_shading_template gz_shading_template_empty(void);
+
+/** The names of gz_shading_template_named(), separated by commas. */
+extern const char gz_shading_template_names[];
+
+/**
+ * A template of etc/illustration/, which the program holds, by its name without ending.
+ *
+ * @retval GZ_ERR_NOT_FOUND  there is none; not logged
+ */
+enum gz_result gz_shading_template_named(const char *name,
+					 struct gz_shading_template *out_template);
+
 /** Set the combined settings that a template names. */
 void gz_shading_template_apply(const struct gz_shading_template *shading_template,
 			       struct gz_illustration_settings *combined);

@@ -220,6 +220,8 @@ void gz_shading_tile_compose(const struct gz_shading_shared *shared, int x, int 
 	if (shared->settings->lines > 0)
 		fill_lines(shared->settings, place.rows, tile, &layers);
 	gz_tone_apply(shared->curve, tile->ids, count, tile->map);
-	gz_shading_map_compose(&layers, &all, &shared->weights, 1, tile->map);
+	const bool own = shared->frame->weights && shared->frame->objects > 0;
+	gz_shading_map_compose(&layers, &all, own ? shared->frame->weights : &shared->weights,
+			       own ? shared->frame->objects : 1, tile->map);
 	write_tile(shared, &place, tile->map);
 }

@@ -114,6 +114,8 @@ void gz_scene_free_labels(const struct gz_scene *scene, struct gz_label_surfaces
 
 static void free_meshes(struct gz_scene *scene)
 {
+	free(scene->inputs);
+	scene->inputs = NULL;
 	for (size_t i = 0; scene->meshes && i < scene->settings.objects.count; i++)
 		gz_mesh_free(&scene->meshes[i]);
 	free(scene->meshes);
@@ -128,6 +130,25 @@ static enum gz_result load_mesh(const struct scene_loader *loader,
 	char path[GZ_PATH_SIZE];
 	const enum gz_result result = find_named_file(loader, object->section, object->mesh, path);
 	return result == GZ_OK ? gz_mesh_read(path, loader->log, out_mesh) : result;
+}
+
+/* Note the files of meshes and labels, which are there. */
+static enum gz_result note_inputs(const struct scene_loader *loader, struct gz_scene *scene)
+{
+	const struct gz_scene_objects *objects = &loader->settings->objects;
+	if (!scene->meshes && !scene->labels)
+		return GZ_OK;
+	scene->inputs = calloc(objects->count, sizeof *scene->inputs);
+	if (!scene->inputs)
+		return GZ_ERR_NO_MEM;
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < objects->count && result == GZ_OK; i++) {
+		const struct gz_scene_object *item = &objects->items[i];
+		const char *file = item->mesh[0] ? item->mesh : item->labels;
+		if (file[0])
+			result = find_named_file(loader, item->section, file, scene->inputs[i]);
+	}
+	return result;
 }
 
 static enum gz_result load_meshes(const struct scene_loader *loader, struct gz_scene *scene)
@@ -193,6 +214,21 @@ static enum gz_result load_label_names(const struct scene_loader *loader,
 	return result == GZ_ERR_NO_MEM ? result : GZ_OK;
 }
 
+/* Free the surfaces of labels that an object does not show. */
+static void drop_other_regions(const struct gz_scene_object *object,
+			       struct gz_label_surfaces *surfaces)
+{
+	size_t kept = 0;
+	for (size_t i = 0; i < surfaces->count; i++) {
+		struct gz_label_surface *surface = &surfaces->items[i];
+		if (gz_scene_object_has_region(object, surface->number, surface->name))
+			surfaces->items[kept++] = *surface;
+		else
+			gz_mesh_free(&surface->mesh);
+	}
+	surfaces->count = kept;
+}
+
 static enum gz_result load_labels_of(const struct scene_loader *loader,
 				     const struct gz_scene_object *object,
 				     struct gz_label_surfaces *out_surfaces)
@@ -217,15 +253,23 @@ static enum gz_result load_labels_of(const struct scene_loader *loader,
 	};
 	const int64_t start_ns = gz_clock_now_ns();
 	result = gz_label_surfaces_make(&request, workers, loader->log, out_surfaces);
+	const size_t all = result == GZ_OK ? out_surfaces->count : 0;
+	if (result == GZ_OK)
+		drop_other_regions(object, out_surfaces);
 	gz_debug(loader->log, "%s: surfaces of %zu labels: %.0f ms", object->labels,
 		 result == GZ_OK ? out_surfaces->count : 0,
 		 gz_ns_to_ms(gz_clock_now_ns() - start_ns));
 	gz_workers_destroy(&workers);
 	gz_volume_free(&volume);
 	gz_label_names_free(&names);
-	if (result == GZ_OK && out_surfaces->count == 0)
+	if (result == GZ_OK && all == 0)
 		gz_warn(loader->log, "%s: %s: %s holds no label: every voxel is 0", loader->name,
 			object->section, object->labels);
+	else if (result == GZ_OK && out_surfaces->count == 0)
+		gz_warn(loader->log,
+			"%s: %s: no label has a name or number of regions = %s; gazeview "
+			"--list-objects prints them without that key",
+			loader->name, object->section, object->regions);
 	return result;
 }
 
@@ -454,6 +498,42 @@ enum gz_result gz_scene_find_cube(const char *scene, const struct gz_log *log,
 	return result;
 }
 
+/* Find one template by its name. */
+static enum gz_result find_template(const struct scene_loader *loader, const char *key,
+				    const char *name, struct gz_shading_template *out_template)
+{
+	char path[GZ_PATH_SIZE];
+	if (!name[0]) {
+		*out_template = gz_shading_template_empty();
+		return GZ_OK;
+	}
+	if (gz_shading_template_named(name, out_template) == GZ_OK)
+		return GZ_OK;
+	if (gz_scene_find_file(loader->name, name, path) == GZ_OK)
+		return gz_shading_template_read(path, loader->log, out_template);
+	gz_err(loader->log,
+	       "%s: %s: %s is neither a template (%s) nor a file beside the scene or under "
+	       "GAZECAST_DATA",
+	       loader->name, key, name, gz_shading_template_names);
+	return GZ_ERR_NOT_FOUND;
+}
+
+enum gz_result gz_scene_find_templates(const char *scene, const struct gz_log *log,
+				       struct gz_scene_settings *settings)
+{
+	const struct scene_loader loader = { .name = scene, .log = log, .settings = settings };
+	struct gz_illustration_look *look = &settings->rays.illustration;
+	enum gz_result result = find_template(&loader, "illustration.template", look->template_name,
+					      &look->shading_template);
+	for (size_t i = 0; i < settings->objects.count && result == GZ_OK; i++) {
+		struct gz_scene_object *item = &settings->objects.items[i];
+		char key[GZ_SCENE_SECTION_SIZE + 16];
+		snprintf(key, sizeof key, "%s.template", item->section);
+		result = find_template(&loader, key, item->template_name, &item->shading_template);
+	}
+	return result;
+}
+
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 			     const struct gz_log *log, struct gz_scene *out_scene)
 {
@@ -494,6 +574,8 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 	enum gz_result result = gz_scene_load_table(parts->name, log, &scene.settings.foveation);
 	if (result == GZ_OK)
 		result = gz_scene_find_cube(parts->name, log, &scene.settings.rays.environment);
+	if (result == GZ_OK)
+		result = gz_scene_find_templates(parts->name, log, &scene.settings);
 	if (parts->transfer)
 		scene.transfer = *parts->transfer;
 	else if (result == GZ_OK)
@@ -502,6 +584,8 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 		result = load_meshes(&loader, &scene);
 	if (result == GZ_OK)
 		result = load_labels(&loader, &scene);
+	if (result == GZ_OK)
+		result = note_inputs(&loader, &scene);
 	if (result == GZ_OK)
 		result = gz_scene_has_volume(&scene.settings) ? load_volume(&loader, &scene.volume)
 							      : make_empty_space(&loader, &scene);
@@ -531,6 +615,8 @@ enum gz_result gz_scene_try(const struct gz_scene_source *source, const struct g
 	if (result == GZ_OK)
 		result = gz_scene_find_cube(source->path, log, &settings.rays.environment);
 	if (result == GZ_OK)
+		result = gz_scene_find_templates(source->path, log, &settings);
+	if (result == GZ_OK)
 		result = load_named_transfer(&loader, &transfer);
 	if (result == GZ_OK && !settings.volume_procedural && gz_scene_has_volume(&settings))
 		result = find_volume(&loader, path);
@@ -554,6 +640,13 @@ static void list_object(const struct gz_object *object, struct gz_object *out_ob
 	if (*count < room)
 		out_objects[*count] = *object;
 	++*count;
+}
+
+/* What the settings say of how an object is shown. */
+static void style_object(const struct gz_scene_object *item, struct gz_object *object)
+{
+	object->style = &item->style;
+	object->shading_template = item->template_name[0] ? &item->shading_template : NULL;
 }
 
 /* Append the volume once for each technique that shows it. The first has the id 1. */
@@ -580,6 +673,7 @@ static void list_volumes(const struct gz_scene *scene, struct gz_object *out_obj
 		object.technique = gz_scene_technique(settings, item);
 		object.id = item == shown ? 1 : (uint32_t)i + 2;
 		object.name = gz_scene_object_name(item);
+		style_object(item, &object);
 		list_object(&object, out_objects, room, count);
 	}
 }
@@ -606,7 +700,7 @@ static void list_labels(const struct gz_scene *scene, size_t index, struct gz_ob
 	const struct gz_scene_object *item = &scene->settings.objects.items[index];
 	const struct gz_label_surfaces *labels = &scene->labels[index];
 	for (size_t i = 0; item->visible && i < labels->count; i++) {
-		const struct gz_object object = {
+		struct gz_object object = {
 			.technique = gz_scene_technique(&scene->settings, item),
 			.id = gz_scene_label_id(index, i),
 			.volume = &scene->volume,
@@ -614,7 +708,9 @@ static void list_labels(const struct gz_scene *scene, size_t index, struct gz_ob
 			.mesh = &labels->items[i].mesh,
 			.colour = labels->items[i].colour,
 			.name = labels->items[i].name[0] ? labels->items[i].name : NULL,
+			.input = scene->inputs ? scene->inputs[index] : NULL,
 		};
+		style_object(item, &object);
 		list_object(&object, out_objects, room, count);
 	}
 }
@@ -627,14 +723,16 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
 	list_volumes(scene, out_objects, room, &count);
 	for (size_t i = 0; scene->meshes && i < settings->objects.count; i++) {
 		const struct gz_scene_object *item = &settings->objects.items[i];
-		const struct gz_object object = {
+		struct gz_object object = {
 			.technique = gz_scene_technique(settings, item),
 			.id = (uint32_t)i + 2,
 			.volume = &scene->volume,
 			.transfer = &scene->transfer,
 			.mesh = &scene->meshes[i],
 			.name = gz_scene_object_name(item),
+			.input = scene->inputs ? scene->inputs[i] : NULL,
 		};
+		style_object(item, &object);
 		if (item->mesh[0] && item->visible)
 			list_object(&object, out_objects, room, &count);
 	}

@@ -27,6 +27,9 @@ struct gz_scene {
 	struct gz_mesh *meshes;
 	/** Likewise the surfaces of labels. NULL: no object has labels. */
 	struct gz_label_surfaces *labels;
+	/** Of each of the settings' objects with a mesh or labels: the file; owned. NULL: none has.
+	 */
+	char (*inputs)[GZ_PATH_SIZE];
 	/** What became the origin of all meshes and labels of a scene without a volume, mm. */
 	double centre[3];
 };
@@ -131,6 +134,19 @@ enum gz_result gz_scene_load_table(const char *scene, const struct gz_log *log,
  */
 enum gz_result gz_scene_find_cube(const char *scene, const struct gz_log *log,
 				  struct gz_environment *environment);
+
+/**
+ * Find the template of each object and that of the whole scene: gz_shading_template_named(), or a
+ * file. gz_scene_load() does this for a scene's own settings; call it for settings that something
+ * else has changed.
+ *
+ * @param scene  path of the scene beside which the files are searched first
+ * @param[in,out] settings  their templates are written
+ * @retval GZ_ERR_NOT_FOUND  no such template; logged with the names of those that there are
+ * @return otherwise the failures of gz_shading_template_read(); logged
+ */
+enum gz_result gz_scene_find_templates(const char *scene, const struct gz_log *log,
+				       struct gz_scene_settings *settings);
 
 /**
  * Read one of the transfer functions that transfer.also names.

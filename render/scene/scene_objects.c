@@ -1,5 +1,7 @@
 #include "render/scene/scene_objects.h"
 
+#include <fnmatch.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -31,10 +33,17 @@ const struct gz_option gz_scene_object_options[GZ_SCENE_OBJECT_OPTIONS] = {
 	  .help = "file of particles; section [particles] says how they become a volume" },
 	{ "object.visible", GZ_OPTION_BOOL, AT(visible), .preset = "yes",
 	  .help = "whether the object is shown" },
-	{ "object.importance", GZ_OPTION_DOUBLE, AT(importance), 0, 1, .preset = "0.5",
-	  .help = "importance of the object for illustrative techniques, 0 to 1" },
-	{ "object.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_NAME_SIZE, .preset = "",
-	  .help = "name of a template of illustrative settings" },
+	{ "object.regions", GZ_OPTION_STRING, AT(regions), .max = GZ_SCENE_FILE_SIZE, .preset = "",
+	  .help = "of labels: names or numbers of those to show, such as Hippocampus_* 37; -37 "
+		  "leaves one out" },
+	{ "object.importance", GZ_OPTION_DOUBLE, AT(style.importance), 0, 1, .preset = "0.5",
+	  .help = "importance of the object in illustrations, 0 to 1" },
+	{ "object.transparency", GZ_OPTION_DOUBLE, AT(style.transparency), 0, 1, .preset = "0",
+	  .help = "how much of what is behind the object shows in illustrations, 0 to 1" },
+	{ "object.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_SCENE_FILE_SIZE,
+	  .preset = "",
+	  .help = "template of illustrative settings: a name, or a file, searched as volume.file "
+		  "is" },
 };
 
 struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
@@ -189,6 +198,11 @@ static enum gz_result check_object(const struct gz_scene_object *object, const c
 		       name, object->section);
 		return GZ_ERR_FORMAT;
 	}
+	if (object->regions[0] && kinds != GZ_OBJECT_LABELS) {
+		gz_err(log, "%s: %s: only labels have regions; remove regions", name,
+		       object->section);
+		return GZ_ERR_FORMAT;
+	}
 	if (technique->shows & kinds)
 		return GZ_OK;
 	return refuse_kind(object, key, technique_for(kinds), name, log);
@@ -201,6 +215,33 @@ enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, co
 	for (size_t i = 0; i < objects->count && result == GZ_OK; i++)
 		result = check_object(&objects->items[i], name, log);
 	return result;
+}
+
+/* Take the next word of a text. Returns false at its end. */
+static bool next_region(const char **text, char word[GZ_SCENE_FILE_SIZE])
+{
+	*text += strspn(*text, " \t");
+	const size_t length = strcspn(*text, " \t");
+	memcpy(word, *text, length);
+	word[length] = '\0';
+	*text += length;
+	return length > 0;
+}
+
+bool gz_scene_object_has_region(const struct gz_scene_object *object, int32_t number,
+				const char *name)
+{
+	const char *rest = object->regions;
+	char word[GZ_SCENE_FILE_SIZE], digits[16];
+	bool shown = rest[strspn(rest, " \t")] == '\0' || rest[strspn(rest, " \t")] == '-';
+	snprintf(digits, sizeof digits, "%" PRId32, number);
+	while (next_region(&rest, word)) {
+		const bool leaves_out = word[0] == '-';
+		const char *pattern = word + leaves_out;
+		if (fnmatch(pattern, name, 0) == 0 || fnmatch(pattern, digits, 0) == 0)
+			shown = !leaves_out;
+	}
+	return shown;
 }
 
 enum gz_result gz_scene_objects_of_mesh(const char *file, struct gz_scene_objects *out_objects)

@@ -8,11 +8,14 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/log.h"
 #include "base/option.h"
 #include "base/result.h"
 #include "base/sizes.h"
+#include "render/illustration/shading_template.h"
+#include "render/technique/technique.h"
 
 /** Most objects of a scene. */
 #define GZ_SCENE_OBJECTS_MAX 32
@@ -33,9 +36,11 @@ struct gz_scene_object {
 	char mesh[GZ_SCENE_FILE_SIZE];
 	char particles[GZ_SCENE_FILE_SIZE];
 	bool visible;
-	double importance;                /**< [0, 1]; no technique of this version uses it */
-	char template_name[GZ_NAME_SIZE]; /**< of illustrative settings, which no technique of this
-					     version uses; empty: none */
+	char regions[GZ_SCENE_FILE_SIZE]; /**< of labels: which are shown; empty: all */
+	struct gz_object_style style;
+	char template_name[GZ_SCENE_FILE_SIZE]; /**< of illustrations: gz_shading_template_named(),
+						   or a file; empty: none */
+	struct gz_shading_template shading_template; /**< what it names, once it is found */
 };
 
 /** All objects of a scene. Zero-initialised has none. */
@@ -45,7 +50,7 @@ struct gz_scene_objects {
 };
 
 /** Options of an object. */
-#define GZ_SCENE_OBJECT_OPTIONS 9
+#define GZ_SCENE_OBJECT_OPTIONS 11
 
 /** Table over struct gz_scene_object. Its keys are "object.<name>"; those of one object are
  *  "object NAME.<name>". */
@@ -97,6 +102,16 @@ enum gz_result gz_scene_objects_check(const struct gz_scene_objects *objects, co
  * @retval GZ_ERR_FULL  the path is too long; not logged
  */
 enum gz_result gz_scene_objects_of_mesh(const char *file, struct gz_scene_objects *out_objects);
+
+/**
+ * Whether a label of an object is shown: what its regions say. They are names or numbers of labels,
+ * separated by blanks, in which * stands for any text and ? for any character. One after a minus
+ * takes labels away again. Of regions that all begin with a minus, the others are shown.
+ *
+ * @param name  of the label; "": it has none
+ */
+bool gz_scene_object_has_region(const struct gz_scene_object *object, int32_t number,
+				const char *name);
 
 /** The kinds of data that an object is given, as bits of enum gz_object_data. */
 unsigned gz_scene_object_kinds(const struct gz_scene_object *object);

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+const struct gz_object_style gz_object_style_plain = { .importance = 0.5, .transparency = 0 };
+
 bool gz_technique_has_backend(const struct gz_technique *technique, const char *name)
 {
 	for (size_t i = 0; technique->backends[i]; i++)

@@ -35,6 +35,17 @@ enum gz_object_data {
 
 struct gz_technique;
 
+/** What is said of an object besides its data. Techniques use what they can show. */
+struct gz_object_style {
+	double importance;   /**< [0, 1] */
+	double transparency; /**< [0, 1]: 0 hides what is behind, 1 cannot be seen */
+};
+
+/** The style of an object for which nothing is said: half important, opaque. */
+extern const struct gz_object_style gz_object_style_plain;
+
+struct gz_shading_template;
+
 /** One thing in a picture. All pointers are borrowed. */
 struct gz_object {
 	const struct gz_technique *technique; /**< draws the object */
@@ -46,6 +57,11 @@ struct gz_object {
 						 is; NULL: none */
 	const float *colour; /**< red, green and blue of a mesh, [0, 1]; NULL: the settings' */
 	const char *name;    /**< for lists and messages; NULL: none */
+	const struct gz_object_style *style; /**< NULL: gz_object_style_plain */
+	/** How illustrations shade it; NULL: as the settings say. */
+	const struct gz_shading_template *shading_template;
+	const char *input; /**< file that the mesh stems from, beside which what is computed of it
+			      may be kept; NULL: none */
 	/** Numbers that the owner increases when it changes what the pointers above lead to. */
 	uint64_t data_revision, transfer_revision;
 };

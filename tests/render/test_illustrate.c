@@ -20,10 +20,10 @@ struct easel {
 	struct gz_volume volume; /* its box, 40 mm wide, is the world */
 	struct gz_mesh meshes[2];
 	struct gz_object objects[2];
-	struct gz_illustrated each[2];
+	struct gz_object_style styles[2];
 	size_t count;
 	struct gz_camera camera;
-	struct gz_shading_settings settings;
+	struct gz_illustration_look look; /* whose single settings count */
 	struct gz_foveation foveation;
 	uint32_t chosen_id;
 	struct gz_plan plan;
@@ -37,7 +37,7 @@ static void set_up_easel(struct easel *easel)
 	static const int dims[3] = { 4, 4, 4 };
 	static const double spacing[3] = { 10, 10, 10 };
 	const struct gz_option_binding binding = { gz_shading_options, gz_shading_option_count,
-						   &easel->settings, NULL };
+						   &easel->look.single, NULL };
 	memset(easel, 0, sizeof *easel);
 	easel->volume = field_volume(field_ball, dims, spacing, GZ_VOXEL_F32);
 	easel->meshes[0] = mesh_ball(RADIUS_MM, 4);
@@ -46,12 +46,14 @@ static void set_up_easel(struct easel *easel)
 		easel->objects[i] = (struct gz_object) { .id = 3 + (uint32_t)i,
 							 .volume = &easel->volume,
 							 .mesh = &easel->meshes[i] };
-		easel->each[i].importance = 1;
+		easel->styles[i].importance = 1;
+		easel->objects[i].style = &easel->styles[i];
 	}
 	easel->camera = (struct gz_camera) {
 		.eye = { 0, -2, 0 }, .up = { 0, 0, 1 }, .fov_deg = 30, .height = 1
 	};
 	assert_int_equal(gz_options_preset(&binding), GZ_OK);
+	easel->look.source = GZ_ILLUSTRATION_SINGLE;
 	easel->foveation = gz_foveation_full();
 }
 
@@ -80,7 +82,7 @@ static void add_ball(struct easel *easel, double x, double y, double z)
 /* No steps over the picture but equalisation, and one light. */
 static void plain_look(struct easel *easel)
 {
-	struct gz_shading_settings *settings = &easel->settings;
+	struct gz_shading_settings *settings = &easel->look.single;
 	settings->main_light = 1;
 	settings->plateau_light = settings->grazing_light = 0;
 	settings->edge_light = settings->overlap_shadow = settings->haze = settings->lines = 0;
@@ -94,7 +96,7 @@ static enum gz_result draw_shot(struct gz_illustrate_caster *caster, struct ease
 	const struct gz_illustrate_shot shot = {
 		.camera = &easel->camera,
 		.plan = &easel->plan,
-		.settings = &easel->settings,
+		.look = &easel->look,
 		.chosen_id = easel->chosen_id,
 	};
 	assert_int_equal(
@@ -114,9 +116,7 @@ static struct gz_illustrate_caster *new_caster(int threads, const char *simd)
 static void draw_easel(struct easel *easel, int threads)
 {
 	struct gz_illustrate_caster *caster = new_caster(threads, NULL);
-	assert_int_equal(
-		gz_illustrate_caster_show(caster, easel->objects, easel->each, easel->count),
-		GZ_OK);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel->objects, easel->count), GZ_OK);
 	assert_int_equal(draw_shot(caster, easel), GZ_OK);
 	gz_illustrate_caster_destroy(&caster);
 }
@@ -217,7 +217,7 @@ static void inside_out_looks_the_same(void **state)
 	struct easel easel;
 	int apart = 0;
 	set_up_easel(&easel);
-	easel.settings.surface_shape = easel.settings.curvature = 0.5;
+	easel.look.single.surface_shape = easel.look.single.curvature = 0.5;
 	draw_easel(&easel, 1);
 	memcpy(right, gz_image_words(&easel.image), sizeof right);
 	struct gz_mesh *mesh = &easel.meshes[0];
@@ -244,7 +244,7 @@ static void threads_give_the_same_bits(void **state)
 	struct easel easel;
 	set_up_easel(&easel);
 	add_ball(&easel, -9, -15, 3);
-	easel.settings.object_distance = 0.5;
+	easel.look.single.object_distance = 0.5;
 	easel.chosen_id = 4;
 	draw_easel(&easel, 1);
 	memcpy(alone, gz_image_words(&easel.image), sizeof alone);
@@ -304,19 +304,251 @@ static void what_does_not_matter_fades(void **state)
 	plain_look(&easel);
 	draw_easel(&easel, 2);
 	const double plain[2] = { mean_of_object(&easel, 3), mean_of_object(&easel, 4) };
-	easel.settings.importance = 1;
-	easel.each[0].importance = 0.25;
+	easel.look.single.importance = 1;
+	easel.styles[0].importance = 0.25;
 	draw_easel(&easel, 2);
 	assert_float_equal(mean_of_object(&easel, 3), 0.25 * plain[0] + 0.75 * 255, 0.6);
 	assert_float_equal(mean_of_object(&easel, 4), plain[1], 0.6);
 	/* Of an object as far as the other, nothing is left; the chosen one stays. */
-	easel.settings.importance = 0;
-	easel.settings.object_distance = 1;
-	easel.settings.object_distance_mm = 0.5;
+	easel.look.single.importance = 0;
+	easel.look.single.object_distance = 1;
+	easel.look.single.object_distance_mm = 0.5;
 	easel.chosen_id = 4;
 	draw_easel(&easel, 2);
 	assert_float_equal(mean_of_object(&easel, 4), plain[1], 0.6);
 	assert_true(mean_of_object(&easel, 3) > 250);
+	take_down_easel(&easel);
+}
+
+/* ---- several objects ---- */
+
+enum { SHEETS = 9 };
+
+/* Rectangles across the view, in mm of the picture: right and up from its middle. */
+struct sheet {
+	double least[2], greatest[2], depth; /* away from the viewer */
+	double importance, transparency;
+};
+
+/* A mesh of one sheet. The viewer looks along +y. */
+static struct gz_mesh mesh_of_sheet(const struct sheet *sheet)
+{
+	struct gz_mesh mesh;
+	assert_int_equal(gz_mesh_allocate(4, 2, &mesh), GZ_OK);
+	for (int v = 0; v < 4; v++) {
+		const double corner[3] = { v & 1 ? sheet->greatest[0] : sheet->least[0],
+					   sheet->depth,
+					   v & 2 ? sheet->greatest[1] : sheet->least[1] };
+		for (int axis = 0; axis < 3; axis++) {
+			mesh.positions[v][axis] = (float)corner[axis];
+			mesh.normals[v][axis] = axis == 1 ? -1 : 0;
+		}
+	}
+	static const uint32_t triangles[2][3] = { { 0, 1, 2 }, { 1, 3, 2 } };
+	memcpy(mesh.triangles, triangles, sizeof triangles);
+	return mesh;
+}
+
+static int nearer_first(const void *a, const void *b)
+{
+	const double x = ((const struct sheet *)a)->depth, y = ((const struct sheet *)b)->depth;
+	return (x > y) - (x < y);
+}
+
+/* What sheets in the order of their depth show at a place: each as bright as it is unimportant.
+ * Three transparent ones count, and the next opaque one behind them. false: too near to a border.
+ */
+static bool blend_sheets(const struct sheet sorted[SHEETS], const double place[2], double *out_tone)
+{
+	double through = 1, sum = 0;
+	int layers = 0;
+	for (int i = 0; i < SHEETS; i++) {
+		const struct sheet *sheet = &sorted[i];
+		bool covers = true;
+		for (int axis = 0; axis < 2; axis++) {
+			if (fabs(place[axis] - sheet->least[axis]) < 0.2 ||
+			    fabs(place[axis] - sheet->greatest[axis]) < 0.2)
+				return false;
+			covers = covers && place[axis] > sheet->least[axis] &&
+				 place[axis] < sheet->greatest[axis];
+		}
+		if (!covers || (layers == 3 && sheet->transparency > 0))
+			continue;
+		sum += through * (1 - sheet->transparency) * (1 - sheet->importance);
+		through *= sheet->transparency;
+		layers++;
+	}
+	*out_tone = sum + through;
+	return true;
+}
+
+static void make_sheets(uint32_t *seed, struct sheet sheets[SHEETS])
+{
+	for (int i = 0; i < SHEETS; i++) {
+		struct sheet *sheet = &sheets[i];
+		for (int axis = 0; axis < 2; axis++) {
+			sheet->least[axis] = -18 + 14 * field_random(seed);
+			sheet->greatest[axis] = 18 - 14 * field_random(seed);
+		}
+		sheet->depth = -18 + 36 * field_random(seed);
+		sheet->importance = field_random(seed);
+		sheet->transparency = i % 3 == 0 ? 0 : field_random(seed);
+	}
+}
+
+static void transparent_objects_blend_by_depth(void **state)
+{
+	(void)state;
+	struct easel easel;
+	uint32_t seed = 5;
+	set_up_easel(&easel);
+	plain_look(&easel);
+	easel.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	easel.look.single.main_light = easel.look.single.flat = 0;
+	easel.look.single.equalisation = 0;
+	easel.look.single.importance = 1;
+	for (int round = 0; round < 4; round++) {
+		struct sheet sheets[SHEETS];
+		struct gz_mesh meshes[SHEETS];
+		struct gz_object objects[SHEETS];
+		struct gz_object_style styles[SHEETS];
+		struct gz_illustrate_caster *caster = new_caster(2, NULL);
+		int compared = 0;
+		make_sheets(&seed, sheets);
+		for (int i = 0; i < SHEETS; i++) {
+			meshes[i] = mesh_of_sheet(&sheets[i]);
+			styles[i] = (struct gz_object_style) { sheets[i].importance,
+							       sheets[i].transparency };
+			objects[i] = (struct gz_object) { .id = 20 - (uint32_t)i,
+							  .volume = &easel.volume,
+							  .mesh = &meshes[i],
+							  .style = &styles[i] };
+		}
+		assert_int_equal(gz_illustrate_caster_show(caster, objects, SHEETS), GZ_OK);
+		assert_int_equal(draw_shot(caster, &easel), GZ_OK);
+		qsort(sheets, SHEETS, sizeof sheets[0], nearer_first);
+		for (int i = 0; i < PIXELS; i++) {
+			const int x = i % WIDTH, y = i / WIDTH;
+			const double place[2] = { 40 * (x + 0.5 - WIDTH / 2) / HEIGHT,
+						  -40 * (y + 0.5 - HEIGHT / 2) / HEIGHT };
+			double tone;
+			if (!blend_sheets(sheets, place, &tone))
+				continue;
+			compared++;
+			if (fabs(grey_at(&easel, x, y) - 255 * tone) > 0.6)
+				fail_msg("at %d, %d: %d, not %.2f", x, y, grey_at(&easel, x, y),
+					 255 * tone);
+		}
+		assert_true(compared > PIXELS / 3);
+		gz_illustrate_caster_destroy(&caster);
+		for (int i = 0; i < SHEETS; i++)
+			gz_mesh_free(&meshes[i]);
+	}
+	take_down_easel(&easel);
+}
+
+/* The curve of a sheet of one tone knows black and white alone, so the ball behind it has no grey,
+ * though nothing of the sheet can be seen. */
+static void layers_behind_have_the_curve_of_the_front(void **state)
+{
+	(void)state;
+	const struct sheet whole = { { -19, -19 }, { 19, 19 }, -18, 1, 1 };
+	struct easel easel;
+	int greys[2] = { 0, 0 };
+	set_up_easel(&easel);
+	plain_look(&easel);
+	for (int with = 0; with < 2; with++) {
+		easel.meshes[1] = mesh_of_sheet(&whole);
+		easel.styles[1].transparency = 1;
+		easel.count = 1 + (size_t)with;
+		draw_easel(&easel, 2);
+		for (int i = 0; i < PIXELS; i++)
+			greys[with] += grey_at(&easel, i % WIDTH, i / WIDTH) % 255 != 0;
+		gz_mesh_free(&easel.meshes[1]);
+	}
+	assert_true(greys[0] > 2000);
+	assert_in_range(greys[1], 0, 20);
+	take_down_easel(&easel);
+}
+
+static void template_of_an_object_changes_it_alone(void **state)
+{
+	(void)state;
+	static uint32_t before[PIXELS];
+	struct easel easel;
+	struct gz_shading_template vessels;
+	int changed = 0;
+	set_up_easel(&easel);
+	add_ball(&easel, -9, -15, 3);
+	easel.look.source = GZ_ILLUSTRATION_COMBINED;
+	easel.look.combined = (struct gz_illustration_settings) { 0.2, 0.5, 0.5, 0.5, 0.5, 0 };
+	easel.look.single.equalisation = 0;
+	draw_easel(&easel, 2);
+	memcpy(before, gz_image_words(&easel.image), sizeof before);
+	assert_int_equal(gz_shading_template_named("vessels", &vessels), GZ_OK);
+	easel.objects[1].shading_template = &vessels;
+	draw_easel(&easel, 2);
+	for (int i = 0; i < PIXELS; i++) {
+		const bool same = before[i] == gz_image_words(&easel.image)[i];
+		changed += !same;
+		if (!same && easel.ids.words[i] != 4)
+			fail_msg("pixel %d of object %u changed", i, (unsigned)easel.ids.words[i]);
+	}
+	assert_true(changed > 200);
+	take_down_easel(&easel);
+}
+
+/* Draw once more and return the time that preparing took, ms. */
+static double prepare_ms_of(struct gz_illustrate_caster *caster, struct easel *easel)
+{
+	const struct gz_illustrate_shot shot = { .camera = &easel->camera,
+						 .plan = &easel->plan,
+						 .look = &easel->look };
+	struct gz_frame_stats stats;
+	assert_int_equal(gz_illustrate_caster_draw(caster, &shot, &easel->image, NULL, &stats),
+			 GZ_OK);
+	return stats.prepare_ms;
+}
+
+static void other_styles_make_nothing_again(void **state)
+{
+	(void)state;
+	struct easel easel;
+	struct gz_illustrate_caster *caster = new_caster(1, NULL);
+	set_up_easel(&easel);
+	add_ball(&easel, -9, -15, 3);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 2), GZ_OK);
+	assert_int_equal(draw_shot(caster, &easel), GZ_OK);
+	easel.styles[1].transparency = 0.5;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 2), GZ_OK);
+	assert_true(prepare_ms_of(caster, &easel) == 0);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects + 1, 1), GZ_OK);
+	assert_true(prepare_ms_of(caster, &easel) > 0); /* another tree */
+	easel.objects[1].data_revision++;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects + 1, 1), GZ_OK);
+	assert_true(prepare_ms_of(caster, &easel) > 0);
+	assert_true(prepare_ms_of(caster, &easel) == 0);
+	gz_illustrate_caster_destroy(&caster);
+	take_down_easel(&easel);
+}
+
+/* Nothing at all, triangles without area, and one of which all corners are one vertex. */
+static void broken_meshes_are_drawn_as_far_as_they_go(void **state)
+{
+	(void)state;
+	struct easel easel;
+	set_up_easel(&easel);
+	plain_look(&easel); /* depths begin at the farthest vertex */
+	draw_easel(&easel, 2);
+	const double whole = mean_of_object(&easel, 3);
+	easel.count = 2;
+	draw_easel(&easel, 2); /* the second mesh is empty */
+	assert_true(mean_of_object(&easel, 3) == whole);
+	easel.meshes[1] = mesh_of_sheet(&(struct sheet) { { 5, 5 }, { 5, 5 }, -18, 1, 0 });
+	memset(easel.meshes[1].normals, 0, 4 * sizeof easel.meshes[1].normals[0]);
+	easel.meshes[1].triangles[0][1] = easel.meshes[1].triangles[0][2] = 0;
+	draw_easel(&easel, 2);
+	assert_true(mean_of_object(&easel, 3) == whole);
 	take_down_easel(&easel);
 }
 
@@ -328,20 +560,21 @@ static void what_cannot_be_drawn_is_refused(void **state)
 	set_up_easel(&easel);
 	assert_string_equal(gz_illustrate_caster_describe(caster), "portable, 1 threads");
 	assert_int_equal(draw_shot(caster, &easel), GZ_ERR_INVAL); /* nothing is shown */
-	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 0), GZ_ERR_INVAL);
-	easel.each[0].importance = 2;
-	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, easel.each, 1),
-			 GZ_ERR_INVAL);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 0), GZ_ERR_INVAL);
+	easel.styles[0].importance = 2;
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 1), GZ_ERR_INVAL);
+	easel.styles[0] = (struct gz_object_style) { .importance = 1, .transparency = -0.1 };
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 1), GZ_ERR_INVAL);
+	easel.styles[0].transparency = 0;
 	easel.objects[0].id = 0;
-	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 1), GZ_ERR_INVAL);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 1), GZ_ERR_INVAL);
 	easel.objects[0].id = 3;
-	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 1), GZ_OK);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 1), GZ_OK);
 	assert_int_equal(draw_shot(caster, &easel), GZ_OK);
 	easel.objects[0].volume = NULL;
-	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, NULL, 1),
-			 GZ_ERR_UNSUPPORTED);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 1), GZ_ERR_UNSUPPORTED);
 	assert_int_equal(draw_shot(caster, &easel), GZ_OK); /* what was there */
-	easel.settings.line_width = 9;
+	easel.look.single.line_width = 9;
 	assert_int_equal(draw_shot(caster, &easel), GZ_ERR_INVAL);
 	gz_illustrate_caster_destroy(&caster);
 	assert_null(caster);
@@ -358,6 +591,11 @@ TEST_SUITE(illustrate)
 		cmocka_unit_test(threads_give_the_same_bits),
 		cmocka_unit_test(foveated_picture_is_sharp_at_the_gaze),
 		cmocka_unit_test(what_does_not_matter_fades),
+		cmocka_unit_test(transparent_objects_blend_by_depth),
+		cmocka_unit_test(layers_behind_have_the_curve_of_the_front),
+		cmocka_unit_test(template_of_an_object_changes_it_alone),
+		cmocka_unit_test(other_styles_make_nothing_again),
+		cmocka_unit_test(broken_meshes_are_drawn_as_far_as_they_go),
 		cmocka_unit_test(what_cannot_be_drawn_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

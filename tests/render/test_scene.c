@@ -189,11 +189,11 @@ static void object_sections_are_read_with_their_presets(void **state)
 	assert_string_equal(gz_scene_object_name(object), "the head");
 	assert_string_equal(object->volume, "a.nii");
 	assert_string_equal(object->template_name, "bones");
-	assert_true(object->importance == 0.75 && !object->visible);
+	assert_true(object->style.importance == 0.75 && !object->visible);
 	assert_int_equal(object->technique, 0);
 	struct gz_scene_settings other = s;
 	assert_true(gz_scene_settings_same(&s, &other));
-	other.objects.items[0].importance = 0.5;
+	other.objects.items[0].style.importance = 0.5;
 	assert_false(gz_scene_settings_same(&s, &other));
 }
 

@@ -15,7 +15,8 @@
 static const char head[] = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 6 6\nencoding: raw\n"
 			   "spacings: 2 2 2\n\n";
 
-#define BLOCKS "[object b]\nlabels = l.nrrd\ntechnique = isosurface\n"
+#define BLOCKS_MORE "[object c]\nlabels = l.nrrd\ntechnique = isosurface\n"
+#define BLOCKS      "[object b]\nlabels = l.nrrd\ntechnique = isosurface\n"
 
 /* What is lit by ambient light alone has its colour. */
 #define EVEN_LIGHT "[light]\nambient = 1\ndiffuse = 0\nspecular = 0\n"
@@ -271,6 +272,76 @@ static void volumes_that_are_no_labels_are_refused_by_name(void **state)
 	check_refusal("[object a]\nlabels = none.nrrd\ntechnique = isosurface\n", "none.nrrd");
 }
 
+static void regions_choose_labels_by_name_and_number(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *regions;
+		bool left, right, nameless; /* 37 Hippocampus_L, 38 Hippocampus_R, 4 */
+	} cases[] = {
+		{ "", 1, 1, 1 },
+		{ "Hippocampus_*", 1, 1, 0 },
+		{ "37 4", 1, 0, 1 },
+		{ "*_?  -*_R", 1, 0, 0 },
+		{ "-38", 1, 0, 1 },
+		{ "-* 38", 0, 1, 0 },
+		{ "hippocampus_L", 0, 0, 0 },
+		{ "3", 0, 0, 0 },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct gz_scene_object object = { 0 };
+		strcpy(object.regions, cases[i].regions);
+		if (gz_scene_object_has_region(&object, 37, "Hippocampus_L") != cases[i].left ||
+		    gz_scene_object_has_region(&object, 38, "Hippocampus_R") != cases[i].right ||
+		    gz_scene_object_has_region(&object, 4, "") != cases[i].nameless)
+			fail_msg("regions '%s'", cases[i].regions);
+	}
+}
+
+static void objects_share_labels_by_regions(void **state)
+{
+	(void)state;
+	struct gz_object objects[4];
+	struct gz_scene scene =
+		loaded("[object a]\nlabels = l.nrrd\ntechnique = illustrate\nregions = 9\n"
+		       "importance = 1\ntemplate = vessels\n"
+		       "[object b]\nlabels = l.nrrd\ntechnique = illustrate\nregions = -9\n"
+		       "transparency = 0.75\n");
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 4), 2);
+	assert_int_equal(gz_scene_label_of(&scene, objects[0].id)->number, 9);
+	assert_int_equal(gz_scene_label_of(&scene, objects[1].id)->number, 5);
+	assert_true(objects[0].style->importance == 1 && objects[0].style->transparency == 0);
+	assert_true(objects[1].style->importance == 0.5 && objects[1].style->transparency == 0.75);
+	assert_int_equal(objects[0].shading_template->edge_emphasis, GZ_TEMPLATE_LARGE);
+	assert_null(objects[1].shading_template);
+	assert_string_equal(objects[0].input, files_path("l.nrrd"));
+	gz_scene_free(&scene);
+}
+
+static void wrong_templates_and_regions_are_refused(void **state)
+{
+	(void)state;
+	files_write("own.template", "[template]\nforeground = +\n", 26);
+	files_write("wrong.template", "[template]\nforegroundd = +\n", 27);
+	struct gz_scene scene = loaded(BLOCKS "template = own.template\n");
+	assert_int_equal(scene.settings.objects.items[0].shading_template.foreground,
+			 GZ_TEMPLATE_LARGE);
+	gz_scene_free(&scene);
+	check_refusal(BLOCKS "template = wrong.template\n", "wrong.template:2: ");
+	check_refusal(BLOCKS "template = bones\n",
+		      "object b.template: bones is neither a template (bone-structures, ");
+	check_refusal(BLOCKS "[illustration]\ntemplate = bones\n", "illustration.template: bones");
+	check_refusal("[object m]\nmesh = m.ply\ntechnique = illustrate\nregions = 2\n",
+		      "only labels have regions");
+	struct captured_log log;
+	captured_log_init(&log, "*:warn");
+	assert_int_equal(gz_scene_load(write_scene(BLOCKS "regions = 7\n" BLOCKS_MORE), NULL,
+				       &log.log, &scene),
+			 GZ_OK);
+	assert_non_null(strstr(log.last, "no label has a name or number of regions = 7"));
+	gz_scene_free(&scene);
+}
+
 TEST_SUITE(scene_labels)
 {
 	const struct CMUnitTest tests[] = {
@@ -281,6 +352,9 @@ TEST_SUITE(scene_labels)
 		cmocka_unit_test(labels_are_drawn_in_their_colours),
 		cmocka_unit_test(face_between_neighbours_has_the_colour_of_the_far_one),
 		cmocka_unit_test(volumes_that_are_no_labels_are_refused_by_name),
+		cmocka_unit_test(regions_choose_labels_by_name_and_number),
+		cmocka_unit_test(objects_share_labels_by_regions),
+		cmocka_unit_test(wrong_templates_and_regions_are_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -233,7 +233,7 @@ static void objects_are_printed_and_edited_under_their_names(void **state)
 	assert_prints_back(&settings, false);
 	struct gz_scene_object *object = &settings.objects.items[0];
 	object->visible = true;
-	object->importance = 1;
+	object->style.importance = 1;
 	edit(before, &settings, false,
 	     "; two halves\n[object left]\nvolume = a.nii ; the data\nvisible = true\n"
 	     "importance = 1\n");

@@ -24,8 +24,15 @@ static struct gz_shading_frame make_frame(void)
 		tone[i] = near ? (x < 30 ? 0.2F : 0.4F) : far ? 0.6F : NAN;
 		far_mm[i] = near ? 0 : 5;
 	}
-	return (struct gz_shading_frame) { WIDE, HIGH, tone, depth,       ids,
-					   NULL, 10,   20,   importances, 2 };
+	return (struct gz_shading_frame) { .width = WIDE,
+					   .height = HIGH,
+					   .tone = tone,
+					   .depth = depth,
+					   .ids = ids,
+					   .near = 10,
+					   .far = 20,
+					   .importances = importances,
+					   .objects = 2 };
 }
 
 /* Settings that do nothing. */

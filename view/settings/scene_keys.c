@@ -86,6 +86,25 @@ static bool by_combined(const struct gz_scene_settings *settings)
 	       settings->rays.illustration.source == GZ_ILLUSTRATION_COMBINED;
 }
 
+/* What the scene's template says replaces a combined setting. */
+static bool is_kept_by_template(const struct gz_scene_settings *settings, int level)
+{
+	return by_combined(settings) &&
+	       (!settings->rays.illustration.template_name[0] || level == GZ_TEMPLATE_KEEP);
+}
+
+#define KEPT_BY_TEMPLATE(member)                                                                 \
+	static bool keeps_##member(const struct gz_scene_settings *settings)                     \
+	{                                                                                        \
+		return is_kept_by_template(settings,                                             \
+					   settings->rays.illustration.shading_template.member); \
+	}
+KEPT_BY_TEMPLATE(edge_emphasis)
+KEPT_BY_TEMPLATE(detail_amplitude)
+KEPT_BY_TEMPLATE(detail_frequency)
+KEPT_BY_TEMPLATE(spatial_effect)
+KEPT_BY_TEMPLATE(foreground)
+
 static bool with_labels(const struct gz_scene_settings *settings)
 {
 	for (size_t i = 0; i < settings->objects.count; i++)
@@ -230,6 +249,11 @@ static const struct {
 	{ "illustration.show", by_illustrate },
 	{ "illustration.settings", by_illustrate },
 	{ "illustration.chosen_object", by_illustrate },
+	{ "illustration.edge_emphasis", keeps_edge_emphasis },
+	{ "illustration.detail_amplitude", keeps_detail_amplitude },
+	{ "illustration.detail_frequency", keeps_detail_frequency },
+	{ "illustration.spatial_effect", keeps_spatial_effect },
+	{ "illustration.foreground", keeps_foreground },
 	{ "illustration.", by_combined },
 	{ "shading_map.", by_illustrate },
 	{ "environment.tile", on_the_floor },

@@ -26,12 +26,10 @@ enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *param
 }
 
 enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,
-					 const struct gz_object *objects,
-					 const struct gz_illustrated *each, size_t count)
+					 const struct gz_object *objects, size_t count)
 {
 	(void)caster;
 	(void)objects;
-	(void)each;
 	(void)count;
 	return GZ_ERR_UNSUPPORTED;
 }

@@ -6,18 +6,28 @@
 
 enum { RAYS = GZ_ILLUSTRATE_RAYS, PARAMETERS_MAX = 6 };
 
+#define NO_LOOK UINT32_MAX
+
+/* By how much of its length a ray goes on behind a surface. Chosen: Embree finds places to some
+ * 2^-22 of it, and thinner layers cannot be seen. */
+#define ONWARD (1.0F / (1 << 18))
+/* And at least so far, or a ray that begins on a surface would stay there. */
+#define ONWARD_LEAST_MM 1e-6F
+
 /* What shading reads of each ray's end. */
 struct shading_lanes {
 	float normals[GZ_SHADING_LEVELS][3][RAYS];
 	float viewer[3][RAYS];
 	float greatest[RAYS], least[RAYS]; /* curvatures, as shares of the mesh's scale */
 	float side[RAYS];                  /* -1 where the surface is seen from behind, else 1 */
+	unsigned looks[RAYS];              /* of each mesh; NO_LOOK: the ray has met nothing */
 };
 
 /* A packet on its way. */
 struct illustrate_packet {
 	struct RTCRayHit16 hit;
 	alignas(64) int valid[RAYS]; /* -1: cast this ray */
+	float ends[RAYS];            /* where rays leave the clip box */
 };
 
 /* Cut a ray by the clip box. Returns whether something of it is left. */
@@ -65,6 +75,7 @@ static void aim_packet(const struct gz_illustrate_cast *cast, const struct gz_il
 		packet->valid[i] = tile->active >> i & 1 ? -1 : 0;
 		if (cast->clipped && !clip_ray(cast, ray, i))
 			packet->valid[i] = 0;
+		packet->ends[i] = ray->tfar[i];
 	}
 }
 
@@ -112,6 +123,7 @@ static void fill_empty_lane(int i, struct shading_lanes *lanes)
 	}
 	lanes->greatest[i] = lanes->least[i] = 0;
 	lanes->side[i] = 1;
+	lanes->looks[i] = NO_LOOK;
 }
 
 /* Means of the corners' normals, of any length. Opposite normals can leave nothing: the first one's
@@ -212,6 +224,7 @@ static void read_hits(const struct gz_illustrate_cast *cast, const struct RTCRay
 		const struct triangle_place place =
 			place_of_hit(&cast->meshes[number], &hit->hit, i);
 		fill_lane(&place, hit, i, lanes);
+		lanes->looks[i] = cast->meshes[number].look;
 		const float distance_mm =
 			mean_of(place.shares, place.corners[0]->distance_mm,
 				place.corners[1]->distance_mm, place.corners[2]->distance_mm);
@@ -222,10 +235,11 @@ static void read_hits(const struct gz_illustrate_cast *cast, const struct RTCRay
 }
 
 /* Mean of the parameters that have a weight. */
-static void shade_lanes(const struct gz_illustrate_cast *cast, const struct shading_lanes *lanes,
+static void shade_lanes(const struct gz_illustrate_cast *cast,
+			const struct gz_illustrate_look *look, const struct shading_lanes *lanes,
 			float *out_tone)
 {
-	const struct gz_illustrate_weights *weights = &cast->weights;
+	const struct gz_illustrate_weights *weights = &look->weights;
 	float values[PARAMETERS_MAX][RAYS] = { { 0 } };
 	struct gz_weighted_parameter parameters[PARAMETERS_MAX];
 	struct gz_shading_vectors normals[GZ_SHADING_LEVELS];
@@ -244,12 +258,12 @@ static void shade_lanes(const struct gz_illustrate_cast *cast, const struct shad
 							       lanes->normals[level][1],
 							       lanes->normals[level][2] };
 	if (weights->main_light > 0)
-		gz_shading_main_light(&normals[cast->main_level], RAYS, cast->grazing.light,
+		gz_shading_main_light(&normals[look->main_level], RAYS, look->grazing.light,
 				      values[0]);
 	if (weights->plateau_light > 0)
 		gz_shading_plateau_light(&normals[0], &viewer, RAYS, values[1]);
 	if (weights->grazing_light > 0)
-		gz_shading_grazing_light(normals, RAYS, &cast->grazing, values[2]);
+		gz_shading_grazing_light(normals, RAYS, &look->grazing, values[2]);
 	if (weights->surface_shape > 0)
 		gz_shading_surface_shape(lanes->greatest, lanes->least, RAYS, 1, values[3]);
 	if (weights->curvature > 0)
@@ -277,23 +291,102 @@ static void fill_empty_hits(struct gz_illustrate_hits *hits)
 	}
 }
 
+/* The tone of each ray by the look of what it has met; INFINITY where that is nothing. */
+static void shade_by_looks(const struct gz_illustrate_cast *cast, const struct shading_lanes *lanes,
+			   float out_tone[RAYS])
+{
+	bool done[RAYS];
+	for (int i = 0; i < RAYS; i++) {
+		done[i] = lanes->looks[i] == NO_LOOK;
+		out_tone[i] = INFINITY;
+	}
+	for (int first = 0; first < RAYS; first++) {
+		float tone[RAYS];
+		const unsigned look = lanes->looks[first];
+		if (done[first])
+			continue;
+		shade_lanes(cast, &cast->looks[look], lanes, tone);
+		for (int i = first; i < RAYS; i++)
+			if (lanes->looks[i] == look) {
+				out_tone[i] = tone[i];
+				done[i] = true;
+			}
+	}
+}
+
+/* Whether a ray has met something that others show through. */
+static bool met_transparent(const struct gz_illustrate_cast *cast, const struct RTCRayHit16 *hit,
+			    int i)
+{
+	const unsigned number = hit->hit.geomID[i];
+	return number < cast->mesh_count && cast->meshes[number].transparent;
+}
+
+/* Let the rays that have met transparent surfaces go on; the others are done. Returns whether there
+ * are any. */
+static bool go_on(const struct gz_illustrate_cast *cast, struct illustrate_packet *packet)
+{
+	bool any = false;
+	for (int i = 0; i < RAYS; i++) {
+		struct RTCRay16 *ray = &packet->hit.ray;
+		const bool through = packet->valid[i] && met_transparent(cast, &packet->hit, i);
+		packet->valid[i] = through ? -1 : 0;
+		any = any || through;
+		if (through)
+			ray->tnear[i] = ray->tfar[i] * (1 + ONWARD) + ONWARD_LEAST_MM;
+		ray->tfar[i] = packet->ends[i];
+		packet->hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+	}
+	return any;
+}
+
+/* Find the next surface of each ray that is opaque. */
+static void find_opaque(const struct gz_illustrate_cast *cast, struct gz_embree_query *query,
+			struct illustrate_packet *packet)
+{
+	struct RTCHit16 found = packet->hit.hit;
+	struct RTCRay16 rays = packet->hit.ray;
+	for (bool any = true; any; any = go_on(cast, packet)) {
+		gz_embree_intersect16(packet->valid, cast->tree, query, &packet->hit);
+		for (int i = 0; i < RAYS; i++) {
+			if (!packet->valid[i] || met_transparent(cast, &packet->hit, i))
+				continue;
+			rays.tfar[i] = packet->hit.ray.tfar[i];
+			found.Ng_x[i] = packet->hit.hit.Ng_x[i];
+			found.Ng_y[i] = packet->hit.hit.Ng_y[i];
+			found.Ng_z[i] = packet->hit.hit.Ng_z[i];
+			found.u[i] = packet->hit.hit.u[i];
+			found.v[i] = packet->hit.hit.v[i];
+			found.primID[i] = packet->hit.hit.primID[i];
+			found.geomID[i] = packet->hit.hit.geomID[i];
+		}
+	}
+	packet->hit.hit = found;
+	packet->hit.ray = rays;
+}
+
 void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
 			     const struct gz_illustrate_tile *tile,
-			     struct gz_illustrate_hits *out_hits)
+			     struct gz_illustrate_hits out_hits[GZ_ILLUSTRATE_LAYERS_MAX])
 {
 	struct illustrate_packet packet;
 	struct shading_lanes lanes;
 	struct gz_embree_query query;
+	bool any = true;
 	aim_packet(cast, tile, &packet);
 	gz_embree_query_make(true, &query);
-	gz_embree_intersect16(packet.valid, cast->tree, &query, &packet.hit);
-	if (!any_is_met(&packet.hit)) {
-		fill_empty_hits(out_hits);
-		return;
+	for (int layer = 0; layer < cast->layers; layer++) {
+		any = layer == 0 || (any && go_on(cast, &packet));
+		if (any && layer > 0 && layer + 1 == cast->layers)
+			find_opaque(cast, &query, &packet);
+		else if (any)
+			gz_embree_intersect16(packet.valid, cast->tree, &query, &packet.hit);
+		any = any && any_is_met(&packet.hit);
+		if (!any) {
+			fill_empty_hits(&out_hits[layer]);
+			continue;
+		}
+		read_hits(cast, &packet.hit, &lanes, &out_hits[layer]);
+		shade_by_looks(cast, &lanes, out_hits[layer].tone);
 	}
-	read_hits(cast, &packet.hit, &lanes, out_hits);
-	shade_lanes(cast, &lanes, out_hits->tone);
-	for (int i = 0; i < RAYS; i++)
-		if (out_hits->ids[i] == 0)
-			out_hits->tone[i] = INFINITY;
 }

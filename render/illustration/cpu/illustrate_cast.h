@@ -29,7 +29,9 @@ struct gz_illustrate_vertex {
 struct gz_illustrate_mesh {
 	const uint32_t (*triangles)[3]; /**< in the order of the tree */
 	const struct gz_illustrate_vertex *vertices;
-	uint32_t id; /**< of its object */
+	uint32_t id;      /**< of its object */
+	unsigned look;    /**< which of struct gz_illustrate_cast.looks */
+	bool transparent; /**< rays go on behind it */
 };
 
 /** Weights of the surface parameters, 0 or more. */
@@ -37,6 +39,16 @@ struct gz_illustrate_weights {
 	float main_light, plateau_light, grazing_light, surface_shape, curvature, plain_light;
 	float flat; /**< the tone if all of them are 0, [0, 1] */
 };
+
+/** How a surface becomes a tone. */
+struct gz_illustrate_look {
+	struct gz_illustrate_weights weights;
+	int main_level; /**< of the normals under the main light */
+	struct gz_grazing_light grazing;
+};
+
+/** Most layers of surfaces that a ray goes through. Chosen: more cannot be told apart. */
+#define GZ_ILLUSTRATE_LAYERS_MAX 4
 
 /** What all rays of a frame share. Lengths are in mm, in the frame of struct gz_mesh. */
 struct gz_illustrate_cast {
@@ -48,9 +60,8 @@ struct gz_illustrate_cast {
 	float direction00[3], direction_dx[3], direction_dy[3];
 	bool clipped;
 	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
-	struct gz_illustrate_weights weights;
-	int main_level; /**< of the normals under the main light */
-	struct gz_grazing_light grazing;
+	const struct gz_illustrate_look *looks;
+	int layers;    /**< 1 to GZ_ILLUSTRATE_LAYERS_MAX; 1: no mesh is transparent */
 	float lamp[3]; /**< unit vector towards the lamp of plain light */
 };
 
@@ -68,10 +79,16 @@ struct gz_illustrate_hits {
 	uint32_t ids[GZ_ILLUSTRATE_RAYS];
 };
 
-/** Cast a tile. What a ray finds depends on its pixel alone. A surface that is seen from behind is
- *  shaded as if it faced the viewer. Threads: any number. Does not allocate. */
+/**
+ * Cast a tile. What a ray finds depends on its pixel alone. A surface that is seen from behind is
+ * shaded as if it faced the viewer. Threads: any number. Does not allocate.
+ *
+ * @param[out] out_hits  of each layer: the first surface, then, as long as those before it are
+ *                       transparent, the next ones. The last layer is the next opaque surface:
+ *                       transparent ones in between are left out
+ */
 void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
 			     const struct gz_illustrate_tile *tile,
-			     struct gz_illustrate_hits *out_hits);
+			     struct gz_illustrate_hits out_hits[GZ_ILLUSTRATE_LAYERS_MAX]);
 
 #endif

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/vector.h"
 #include "render/illustration/cpu/illustrate_scene.h"
+#include "render/illustration/shading_map.h"
 #include "render/illustration/shading_picture.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cpu_raycaster.h"
@@ -18,20 +19,33 @@
 /* Tiles of a part of the work. Chosen: a part takes some 50 us. */
 enum { TILES_A_PART = 32 };
 
+/* Towards the lamp of plain light. Chosen: the way that photographs are lit. */
+static const double plain_lamp[3] = { -0.5, 0.5, 1 };
+
 /* What rays find. */
 enum illustrate_plane { PLANE_TONE, PLANE_DEPTH, PLANE_IDS, PLANE_DISTANCE, FOUND_PLANES };
 
 static const enum gz_plane_kind found_kinds[FOUND_PLANES] = { GZ_PLANE_VALUE, GZ_PLANE_VALUE,
 							      GZ_PLANE_ID, GZ_PLANE_VALUE };
 
+/* One layer of surfaces. */
+struct illustrate_layer {
+	struct gz_plane planes[FOUND_PLANES];
+	struct gz_lattices lattices[FOUND_PLANES];
+};
+
 struct gz_illustrate_caster {
 	const struct gz_log *log;
 	const char *simd; /* of the kernels of planes */
 	struct gz_workers *workers;
 	struct gz_illustrate_scene scene;
-	struct gz_plane planes[FOUND_PLANES];
-	struct gz_lattices lattices[FOUND_PLANES];
+	struct illustrate_layer layers[GZ_ILLUSTRATE_LAYERS_MAX];
 	struct gz_shading_picture *picture;
+	struct gz_illustrate_look *looks;   /* by template */
+	struct gz_shading_weights *weights; /* of object 1 to weight_count */
+	size_t look_room, weight_room;
+	float *sums, *shares; /* of the layers before one: their map, and what they let through */
+	size_t blend_room;
 	char description[64];
 };
 
@@ -40,7 +54,9 @@ struct illustrate_job {
 	struct gz_illustrate_cast cast;
 	const struct gz_plan *plan;
 	struct gz_illustrate_caster *caster;
-	int plane_count; /* FOUND_PLANES, or one less without distances */
+	struct gz_shading_settings settings; /* of objects without templates; weights are those of
+						any object */
+	int plane_count;                     /* FOUND_PLANES, or one less without distances */
 };
 
 bool gz_illustrate_caster_present(void)
@@ -95,10 +111,9 @@ enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *param
 }
 
 enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,
-					 const struct gz_object *objects,
-					 const struct gz_illustrated *each, size_t count)
+					 const struct gz_object *objects, size_t count)
 {
-	return gz_illustrate_scene_show(&caster->scene, objects, each, count);
+	return gz_illustrate_scene_show(&caster->scene, objects, count);
 }
 
 static void fill_illustrate_rays(const struct gz_ray_frame *camera, double world_mm,
@@ -147,26 +162,93 @@ static void turn_light(const struct gz_ray_frame *camera, const double direction
 		out_light[axis] = (float)(any ? light[axis] : viewer[axis]);
 }
 
-static void fill_illustrate_look(const struct gz_shading_settings *settings,
-				 const struct gz_ray_frame *camera, struct gz_illustrate_cast *cast)
+/* The look of surfaces by settings. */
+static struct gz_illustrate_look look_of(const struct gz_shading_settings *settings,
+					 const struct gz_ray_frame *camera)
 {
-	/* Chosen: the way that photographs are lit. */
-	static const double lamp[3] = { -0.5, 0.5, 1 };
-	cast->weights = (struct gz_illustrate_weights) {
-		.main_light = (float)settings->main_light,
-		.plateau_light = (float)settings->plateau_light,
-		.grazing_light = (float)settings->grazing_light,
-		.surface_shape = (float)settings->surface_shape,
-		.curvature = (float)settings->curvature,
-		.plain_light = (float)settings->plain_light,
-		.flat = (float)settings->flat,
+	struct gz_illustrate_look look = {
+		.weights = {
+			.main_light = (float)settings->main_light,
+			.plateau_light = (float)settings->plateau_light,
+			.grazing_light = (float)settings->grazing_light,
+			.surface_shape = (float)settings->surface_shape,
+			.curvature = (float)settings->curvature,
+			.plain_light = (float)settings->plain_light,
+			.flat = (float)settings->flat,
+		},
+		.main_level = settings->main_light_smoothing,
+		.grazing = {
+			.exaggeration = (float)settings->exaggeration,
+			.levels = GZ_SHADING_LEVELS,
+		},
 	};
-	cast->main_level = settings->main_light_smoothing;
-	cast->grazing.exaggeration = (float)settings->exaggeration;
-	cast->grazing.levels = GZ_SHADING_LEVELS;
-	gz_grazing_weights(GZ_SHADING_LEVELS, settings->detail_frequency, cast->grazing.weights);
-	turn_light(camera, settings->light_direction, cast->grazing.light);
-	turn_light(camera, lamp, cast->lamp);
+	gz_grazing_weights(GZ_SHADING_LEVELS, settings->detail_frequency, look.grazing.weights);
+	turn_light(camera, settings->light_direction, look.grazing.light);
+	return look;
+}
+
+static struct gz_shading_weights weights_of(const struct gz_shading_settings *settings)
+{
+	return (struct gz_shading_weights) {
+		.scene = 1, /* its weights are in the plane */
+		.edge_light = (float)settings->edge_light,
+		.overlap_shadow = (float)settings->overlap_shadow,
+		.haze = (float)settings->haze,
+		.lines = (float)settings->lines,
+		.background = (float)settings->haze_background,
+	};
+}
+
+/* Room for at least @p count elements of @p size bytes. */
+static enum gz_result make_room(void **room, size_t *have, size_t count, size_t size)
+{
+	if (*have >= count)
+		return GZ_OK;
+	free(*room);
+	*have = 0;
+	*room = calloc(count, size);
+	if (!*room)
+		return GZ_ERR_NO_MEM;
+	*have = count;
+	return GZ_OK;
+}
+
+/* Steps of the picture are done if any object asks for them. */
+static void join_weights(const struct gz_shading_settings *more, struct gz_shading_settings *all)
+{
+	all->edge_light = fmax(all->edge_light, more->edge_light);
+	all->overlap_shadow = fmax(all->overlap_shadow, more->overlap_shadow);
+	all->haze = fmax(all->haze, more->haze);
+	all->lines = fmax(all->lines, more->lines);
+}
+
+/* Resolve the looks of all templates, and the weights of all objects. */
+static enum gz_result fill_illustrate_looks(struct gz_illustrate_caster *caster,
+					    const struct gz_illustration_look *look,
+					    const struct gz_ray_frame *camera,
+					    struct illustrate_job *job)
+{
+	const struct gz_illustrate_scene *scene = &caster->scene;
+	enum gz_result result = make_room((void **)&caster->looks, &caster->look_room,
+					  scene->template_count, sizeof *caster->looks);
+	if (result == GZ_OK)
+		result = make_room((void **)&caster->weights, &caster->weight_room, scene->id_count,
+				   sizeof *caster->weights);
+	if (result != GZ_OK)
+		return result;
+	gz_illustration_look_resolve(look, NULL, &job->settings);
+	for (size_t k = 0; k < scene->template_count; k++) {
+		struct gz_shading_settings settings;
+		gz_illustration_look_resolve(look, scene->templates[k], &settings);
+		caster->looks[k] = look_of(&settings, camera);
+		const struct gz_shading_weights weights = weights_of(&settings);
+		for (size_t i = 0; i < scene->id_count; i++)
+			if (scene->looks[i] == k)
+				caster->weights[i] = weights;
+		join_weights(&settings, &job->settings);
+	}
+	job->cast.looks = caster->looks;
+	return GZ_OK;
 }
 
 static void aim_tile(const struct gz_plan *plan, const struct gz_tile *tile,
@@ -183,6 +265,19 @@ static void aim_tile(const struct gz_plan *plan, const struct gz_tile *tile,
 
 _Static_assert(GZ_TILE_EDGE *GZ_TILE_EDGE == GZ_ILLUSTRATE_RAYS, "a tile is a packet");
 
+static void store_hits(const struct illustrate_job *job, int layer, const struct gz_tile *tile,
+		       uint32_t active, const struct gz_illustrate_hits *hits)
+{
+	uint32_t words[FOUND_PLANES][GZ_ILLUSTRATE_RAYS];
+	memcpy(words[PLANE_TONE], hits->tone, sizeof hits->tone);
+	memcpy(words[PLANE_DEPTH], hits->depth_mm, sizeof hits->depth_mm);
+	memcpy(words[PLANE_IDS], hits->ids, sizeof hits->ids);
+	memcpy(words[PLANE_DISTANCE], hits->distance_mm, sizeof hits->distance_mm);
+	for (int plane = 0; plane < job->plane_count; plane++)
+		gz_lattices_store(&job->caster->layers[layer].lattices[plane], job->plan, tile,
+				  active, words[plane]);
+}
+
 static void illustrate_part(void *user, size_t part, int worker)
 {
 	const struct illustrate_job *job = user;
@@ -192,43 +287,37 @@ static void illustrate_part(void *user, size_t part, int worker)
 	for (size_t i = from; i < end && i < plan->tile_count; i++) {
 		const struct gz_tile *tile = &plan->tiles[i];
 		struct gz_illustrate_tile rays;
-		struct gz_illustrate_hits hits;
-		uint32_t words[FOUND_PLANES][GZ_ILLUSTRATE_RAYS];
+		struct gz_illustrate_hits hits[GZ_ILLUSTRATE_LAYERS_MAX];
 		aim_tile(plan, tile, &rays);
-		gz_illustrate_tile_cast(&job->cast, &rays, &hits);
-		memcpy(words[PLANE_TONE], hits.tone, sizeof hits.tone);
-		memcpy(words[PLANE_DEPTH], hits.depth_mm, sizeof hits.depth_mm);
-		memcpy(words[PLANE_IDS], hits.ids, sizeof hits.ids);
-		memcpy(words[PLANE_DISTANCE], hits.distance_mm, sizeof hits.distance_mm);
-		for (int plane = 0; plane < job->plane_count; plane++)
-			gz_lattices_store(&job->caster->lattices[plane], plan, tile, rays.active,
-					  words[plane]);
+		gz_illustrate_tile_cast(&job->cast, &rays, hits);
+		for (int layer = 0; layer < job->cast.layers; layer++)
+			store_hits(job, layer, tile, rays.active, &hits[layer]);
 	}
 }
 
-static enum gz_result make_found_planes(struct gz_illustrate_caster *caster,
-					const struct gz_plan *plan, int count)
+static enum gz_result make_found_planes(struct illustrate_layer *layer, const struct gz_plan *plan,
+					int count)
 {
 	enum gz_result result = GZ_OK;
 	for (int i = 0; i < count && result == GZ_OK; i++) {
-		result = gz_plane_resize(&caster->planes[i], found_kinds[i], plan->width,
+		result = gz_plane_resize(&layer->planes[i], found_kinds[i], plan->width,
 					 plan->height);
 		if (result == GZ_OK)
-			result = gz_lattices_prepare(&caster->lattices[i], plan,
-						     caster->planes[i].words);
+			result = gz_lattices_prepare(&layer->lattices[i], plan,
+						     layer->planes[i].words);
 	}
 	return result;
 }
 
-static void reconstruct_found(struct gz_illustrate_caster *caster, const struct gz_plan *plan,
-			      int count)
+static void reconstruct_found(struct gz_illustrate_caster *caster, struct illustrate_layer *layer,
+			      const struct gz_plan *plan, int count)
 {
 	const struct gz_row_filters *colours = gz_row_filters_find(caster->simd);
 	for (int i = 0; i < count; i++) {
 		const struct gz_row_filters filters =
 			gz_row_filters_of_plane(found_kinds[i], colours);
-		gz_reconstruct(plan, &caster->lattices[i], &filters, caster->workers,
-			       caster->planes[i].words);
+		gz_reconstruct(plan, &layer->lattices[i], &filters, caster->workers,
+			       layer->planes[i].words);
 	}
 }
 
@@ -253,27 +342,70 @@ static void find_depth_range(const struct gz_illustrate_scene *scene,
 	frame->far = (float)fmax(middle + radius, (double)frame->near * 1.001 + 1e-6 * radius);
 }
 
-static enum gz_result compose_picture(struct gz_illustrate_caster *caster,
-				      const struct gz_illustrate_shot *shot,
-				      const struct gz_ray_frame *camera, bool measured,
-				      struct gz_image *image)
+/* Compose the map of one layer. Those behind the front one take over its tone curve. */
+static enum gz_result compose_layer(const struct illustrate_job *job, int layer,
+				    const struct gz_ray_frame *camera, uint32_t *out_pixels,
+				    const float **out_map)
 {
-	const struct gz_plan *plan = shot->plan;
+	struct gz_illustrate_caster *caster = job->caster;
 	const struct gz_illustrate_scene *scene = &caster->scene;
+	const struct gz_plane *planes = caster->layers[layer].planes;
 	struct gz_shading_frame frame = {
-		.width = plan->width,
-		.height = plan->height,
-		.tone = caster->planes[PLANE_TONE].words,
-		.depth = caster->planes[PLANE_DEPTH].words,
-		.ids = caster->planes[PLANE_IDS].words,
-		.object_distance_mm = measured ? caster->planes[PLANE_DISTANCE].words : NULL,
+		.width = job->plan->width,
+		.height = job->plan->height,
+		.tone = planes[PLANE_TONE].words,
+		.depth = planes[PLANE_DEPTH].words,
+		.ids = planes[PLANE_IDS].words,
+		.object_distance_mm =
+			job->plane_count == FOUND_PLANES ? planes[PLANE_DISTANCE].words : NULL,
 		.importances = scene->importances,
-		.objects = scene->importance_count,
+		.weights = caster->weights,
+		.objects = scene->id_count,
+		.keeps_curve = layer > 0,
 	};
+	find_depth_range(scene, camera, job->plan, &frame);
+	return gz_shading_picture_compose(caster->picture, &frame, &job->settings, caster->workers,
+					  out_pixels, out_map);
+}
+
+/* Add the map of a layer, as far as those before it let it through. */
+static void blend_layer(const struct gz_illustrate_caster *caster, int layer, const float *map,
+			size_t pixels)
+{
+	const struct gz_illustrate_scene *scene = &caster->scene;
+	const uint32_t *ids = caster->layers[layer].planes[PLANE_IDS].words;
+	float *sums = caster->sums, *shares = caster->shares;
+	for (size_t i = 0; i < pixels; i++) {
+		const size_t id = ids[i];
+		const bool is_object = id > 0 && id <= scene->id_count;
+		const float opacity = is_object ? scene->opacities[id - 1] : 1;
+		sums[i] += shares[i] * opacity * map[i];
+		shares[i] *= 1 - opacity;
+	}
+}
+
+static enum gz_result compose_layers(const struct illustrate_job *job,
+				     const struct gz_ray_frame *camera, struct gz_image *image)
+{
+	struct gz_illustrate_caster *caster = job->caster;
+	const size_t pixels = (size_t)job->plan->width * (size_t)job->plan->height;
 	const float *map = NULL;
-	find_depth_range(scene, camera, plan, &frame);
-	return gz_shading_picture_compose(caster->picture, &frame, shot->settings, caster->workers,
-					  gz_image_words(image), &map);
+	enum gz_result result = compose_layer(
+		job, 0, camera, job->cast.layers == 1 ? gz_image_words(image) : NULL, &map);
+	if (result == GZ_OK && job->cast.layers > 1) {
+		memset(caster->sums, 0, pixels * sizeof *caster->sums);
+		for (size_t i = 0; i < pixels; i++)
+			caster->shares[i] = 1;
+		blend_layer(caster, 0, map, pixels);
+	}
+	for (int layer = 1; layer < job->cast.layers && result == GZ_OK; layer++) {
+		result = compose_layer(job, layer, camera, NULL, &map);
+		if (result == GZ_OK)
+			blend_layer(caster, layer, map, pixels);
+	}
+	if (result == GZ_OK && job->cast.layers > 1)
+		gz_shading_grey(caster->sums, pixels, gz_image_words(image));
+	return result;
 }
 
 static enum gz_result copy_plane(const struct gz_plane *from, struct gz_plane *to)
@@ -287,28 +419,61 @@ static enum gz_result copy_plane(const struct gz_plane *from, struct gz_plane *t
 	return result;
 }
 
+/* Room for what is blended of layers behind each other. */
+static enum gz_result make_blend_room(struct gz_illustrate_caster *caster,
+				      const struct gz_plan *plan)
+{
+	const size_t pixels = (size_t)plan->width * (size_t)plan->height;
+	if (caster->blend_room >= pixels)
+		return GZ_OK;
+	free(caster->sums);
+	free(caster->shares);
+	caster->sums = calloc(pixels, sizeof *caster->sums);
+	caster->shares = calloc(pixels, sizeof *caster->shares);
+	caster->blend_room = caster->sums && caster->shares ? pixels : 0;
+	return caster->blend_room > 0 ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+/* Whether distances to the chosen object count. */
+static bool is_measured(const struct gz_illustrate_shot *shot)
+{
+	struct gz_shading_settings settings;
+	gz_illustration_look_resolve(shot->look, NULL, &settings);
+	return settings.object_distance > 0 && shot->chosen_id > 0;
+}
+
 /* Check a shot, and make what it shows and the room for it. */
-static enum gz_result prepare_shot(struct gz_illustrate_caster *caster,
-				   const struct gz_illustrate_shot *shot, struct gz_image *image,
+static enum gz_result prepare_shot(const struct gz_illustrate_shot *shot, struct gz_image *image,
 				   struct illustrate_job *job, struct gz_ray_frame *out_camera)
 {
+	struct gz_illustrate_caster *caster = job->caster;
 	const struct gz_plan *plan = shot->plan;
-	if (caster->scene.meshes.count < 1 || plan->layer_count < 1 ||
-	    !gz_options_hold(gz_shading_options, gz_shading_option_count, shot->settings))
+	if (caster->scene.count < 1 || plan->layer_count < 1 ||
+	    !gz_illustration_look_valid(shot->look))
 		return GZ_ERR_INVAL;
-	const bool measured = shot->settings->object_distance > 0 && shot->chosen_id > 0;
+	const bool measured = is_measured(shot);
 	job->plane_count = measured ? FOUND_PLANES : PLANE_DISTANCE;
+	job->cast.layers = caster->scene.transparent ? GZ_ILLUSTRATE_LAYERS_MAX : 1;
 	enum gz_result result =
 		gz_camera_rays(shot->camera, plan->view.width, plan->view.height, out_camera);
 	if (result == GZ_OK)
 		result = gz_image_resize(image, plan->width, plan->height);
-	if (result == GZ_OK)
-		result = make_found_planes(caster, plan, job->plane_count);
+	for (int i = 0; i < job->cast.layers && result == GZ_OK; i++)
+		result = make_found_planes(&caster->layers[i], plan, job->plane_count);
+	if (result == GZ_OK && job->cast.layers > 1)
+		result = make_blend_room(caster, plan);
 	if (result == GZ_OK)
 		result = gz_illustrate_scene_prepare(&caster->scene, shot->isovalue,
 						     measured ? shot->chosen_id : 0,
 						     caster->workers);
 	return result;
+}
+
+static enum gz_result copy_found(const struct illustrate_layer *layer,
+				 const struct gz_illustrate_planes *planes)
+{
+	const enum gz_result result = copy_plane(&layer->planes[PLANE_DEPTH], planes->depth);
+	return result == GZ_OK ? copy_plane(&layer->planes[PLANE_IDS], planes->ids) : result;
 }
 
 enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
@@ -321,25 +486,26 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 	struct gz_ray_frame camera;
 	const int64_t start_ns = gz_clock_now_ns();
 	const unsigned made_before = caster->scene.made;
-	enum gz_result result = prepare_shot(caster, shot, image, &job, &camera);
+	enum gz_result result = prepare_shot(shot, image, &job, &camera);
+	if (result == GZ_OK)
+		result = fill_illustrate_looks(caster, shot->look, &camera, &job);
 	if (result != GZ_OK)
 		return result;
 	const int64_t prepared_ns = gz_clock_now_ns();
 	job.cast.tree = caster->scene.tree.scene;
 	job.cast.meshes = caster->scene.listed;
-	job.cast.mesh_count = (unsigned)caster->scene.meshes.count;
+	job.cast.mesh_count = (unsigned)caster->scene.count;
 	fill_illustrate_rays(&camera, caster->scene.meshes.world_mm, &job.cast);
 	fill_illustrate_clip(&caster->scene, shot->clip, &job.cast);
-	fill_illustrate_look(shot->settings, &camera, &job.cast);
+	turn_light(&camera, plain_lamp, job.cast.lamp);
 	gz_workers_run(caster->workers, illustrate_part, &job,
 		       (shot->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
 	const int64_t cast_ns = gz_clock_now_ns();
-	reconstruct_found(caster, shot->plan, job.plane_count);
-	result = compose_picture(caster, shot, &camera, job.plane_count == FOUND_PLANES, image);
+	for (int i = 0; i < job.cast.layers; i++)
+		reconstruct_found(caster, &caster->layers[i], shot->plan, job.plane_count);
+	result = compose_layers(&job, &camera, image);
 	if (result == GZ_OK && planes)
-		result = copy_plane(&caster->planes[PLANE_DEPTH], planes->depth);
-	if (result == GZ_OK && planes)
-		result = copy_plane(&caster->planes[PLANE_IDS], planes->ids);
+		result = copy_found(&caster->layers[0], planes);
 	const bool made = caster->scene.made != made_before;
 	const double prepare_ms = made ? gz_ns_to_ms(prepared_ns - start_ns) : 0;
 	if (result == GZ_OK && out_stats)
@@ -367,10 +533,15 @@ void gz_illustrate_caster_destroy(struct gz_illustrate_caster **caster)
 	gz_workers_destroy(&self->workers);
 	gz_illustrate_scene_free(&self->scene);
 	gz_shading_picture_destroy(&self->picture);
-	for (int i = 0; i < FOUND_PLANES; i++) {
-		gz_plane_free(&self->planes[i]);
-		gz_lattices_free(&self->lattices[i]);
-	}
+	for (int k = 0; k < GZ_ILLUSTRATE_LAYERS_MAX; k++)
+		for (int i = 0; i < FOUND_PLANES; i++) {
+			gz_plane_free(&self->layers[k].planes[i]);
+			gz_lattices_free(&self->layers[k].lattices[i]);
+		}
+	free(self->looks);
+	free(self->weights);
+	free(self->sums);
+	free(self->shares);
 	free(self);
 	*caster = NULL;
 }

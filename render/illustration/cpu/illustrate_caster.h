@@ -13,7 +13,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/data/clip_box.h"
-#include "render/illustration/shading_settings.h"
+#include "render/illustration/illustration_look.h"
 #include "render/picture/camera.h"
 #include "render/picture/image.h"
 #include "render/picture/plane.h"
@@ -28,22 +28,15 @@
  */
 struct gz_illustrate_caster;
 
-/** What an illustration knows of an object besides its data. */
-struct gz_illustrated {
-	double importance; /**< [0, 1] */
-	const char *input; /**< file that the mesh stems from, beside which what is computed of it
-			      is kept; NULL: it is not kept. Borrowed */
-};
-
 /** One picture to draw. All pointers are borrowed. */
 struct gz_illustrate_shot {
 	const struct gz_camera *camera;
 	const struct gz_plan *plan;
-	const struct gz_shading_settings *settings;
-	const struct gz_clip_box *clip; /**< only what lies in it shows; NULL: all */
-	double isovalue;                /**< of objects that are volumes */
-	uint32_t chosen_id;             /**< object from which distances count; 0: none. Used if
-					     settings->object_distance is above 0 */
+	const struct gz_illustration_look *look; /**< with its template found */
+	const struct gz_clip_box *clip;          /**< only what lies in it shows; NULL: all */
+	double isovalue;                         /**< of objects that are volumes */
+	uint32_t chosen_id; /**< object from which distances count; 0: none. Used if
+				 settings->object_distance is above 0 */
 };
 
 /** Planes of a picture, for who draws on; each may be NULL. */
@@ -79,20 +72,24 @@ enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *param
  * Show these objects from the next picture on. Surfaces and what shading knows of them are made
  * when that picture is drawn.
  *
- * @param objects  as for gz_surface_caster_show(); ids are 1 to GZ_ILLUSTRATE_ID_MAX
- * @param each     @p count of them, in the order of the objects; NULL: all are of importance 1/2
- * and nothing is kept
- * @retval GZ_ERR_INVAL        no objects, or an id or importance out of range
+ * What is known of meshes that stay is kept: another style costs nothing.
+ *
+ * @param objects  as for gz_surface_caster_show(); ids are 1 to GZ_ILLUSTRATE_ID_MAX. Templates are
+ *                 borrowed, too
+ * @retval GZ_ERR_INVAL        no objects, or an id or style out of range
  * @retval GZ_ERR_UNSUPPORTED  a volume of bricks, or an object without a volume; logged
  * @retval GZ_ERR_NO_MEM       out of memory
  */
 enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,
-					 const struct gz_object *objects,
-					 const struct gz_illustrated *each, size_t count);
+					 const struct gz_object *objects, size_t count);
 
 /**
  * Draw a picture of the plan's size and write every pixel. The background is white. The same bits
  * for any number of threads.
+ *
+ * Transparent objects show what is behind them: each layer of surfaces has a shading map of its
+ * own, with the tone curve of the front layer, and they are blended by depth. The nearest three
+ * transparent surfaces of a ray show, and the next opaque one behind them.
  *
  * @param planes     NULL: no planes are wanted
  * @param out_stats  may be NULL

@@ -10,28 +10,44 @@
 
 #define GZ_LOG_MODULE "illustration"
 
-static void free_items(struct gz_illustrate_scene *scene, size_t count)
+/* Free what is known of items that are not shown any more. */
+static void free_items(struct gz_illustrate_item *items, size_t count)
 {
-	for (size_t i = 0; scene->items && i < count; i++)
-		free(scene->items[i].vertices);
-	free(scene->items);
-	free(scene->listed);
-	free(scene->importances);
-	scene->items = NULL;
-	scene->listed = NULL;
-	scene->importances = NULL;
-	scene->importance_count = 0;
-	scene->measured_id = 0;
-	scene->current = false;
+	for (size_t i = 0; items && i < count; i++)
+		free(items[i].vertices);
+	free(items);
 }
 
-static enum gz_result check_illustrated(const struct gz_object *objects,
-					const struct gz_illustrated *each, size_t count)
+static void free_lists(struct gz_illustrate_scene *scene)
+{
+	free(scene->listed);
+	free(scene->importances);
+	free(scene->opacities);
+	free(scene->looks);
+	free(scene->templates);
+	scene->listed = NULL;
+	scene->importances = scene->opacities = NULL;
+	scene->looks = NULL;
+	scene->templates = NULL;
+	scene->id_count = scene->template_count = 0;
+}
+
+static const struct gz_object_style *style_of(const struct gz_object *object)
+{
+	return object->style ? object->style : &gz_object_style_plain;
+}
+
+static bool is_share(double value)
+{
+	return value >= 0 && value <= 1;
+}
+
+static enum gz_result check_illustrated(const struct gz_object *objects, size_t count)
 {
 	for (size_t i = 0; i < count; i++) {
-		if (objects[i].id < 1 || objects[i].id > GZ_ILLUSTRATE_ID_MAX)
-			return GZ_ERR_INVAL;
-		if (each && !(each[i].importance >= 0 && each[i].importance <= 1))
+		const struct gz_object_style *style = style_of(&objects[i]);
+		if (objects[i].id < 1 || objects[i].id > GZ_ILLUSTRATE_ID_MAX ||
+		    !is_share(style->importance) || !is_share(style->transparency))
 			return GZ_ERR_INVAL;
 	}
 	return count > 0 ? GZ_OK : GZ_ERR_INVAL;
@@ -39,42 +55,114 @@ static enum gz_result check_illustrated(const struct gz_object *objects,
 
 static size_t greatest_id(const struct gz_object *objects, size_t count)
 {
-	size_t greatest = 0;
+	size_t greatest = 1;
 	for (size_t i = 0; i < count; i++)
 		greatest = objects[i].id > greatest ? objects[i].id : greatest;
 	return greatest;
 }
 
-enum gz_result gz_illustrate_scene_show(struct gz_illustrate_scene *scene,
-					const struct gz_object *objects,
-					const struct gz_illustrated *each, size_t count)
+/* The number of a template in the list, to which it is added if it is new. */
+static unsigned number_of_template(struct gz_illustrate_scene *lists,
+				   const struct gz_shading_template *wanted)
 {
-	enum gz_result result = check_illustrated(objects, each, count);
+	for (size_t i = 0; i < lists->template_count; i++)
+		if (lists->templates[i] == wanted)
+			return (unsigned)i;
+	lists->templates[lists->template_count] = wanted;
+	return (unsigned)lists->template_count++;
+}
+
+/* Make the lists by object, and note in the items what is said of them. */
+static enum gz_result make_lists(const struct gz_object *objects, size_t count,
+				 struct gz_illustrate_item *items,
+				 struct gz_illustrate_scene *lists)
+{
+	const size_t ids = greatest_id(objects, count);
+	lists->listed = calloc(count, sizeof *lists->listed);
+	lists->importances = calloc(ids, sizeof *lists->importances);
+	lists->opacities = calloc(ids, sizeof *lists->opacities);
+	lists->looks = calloc(ids, sizeof *lists->looks);
+	lists->templates = calloc(count + 1, sizeof *lists->templates);
+	if (!lists->listed || !lists->importances || !lists->opacities || !lists->looks ||
+	    !lists->templates)
+		return GZ_ERR_NO_MEM;
+	lists->id_count = ids;
+	lists->template_count = 1;
+	for (size_t i = 0; i < ids; i++)
+		lists->opacities[i] = 1;
+	for (size_t i = 0; i < count; i++) {
+		const struct gz_object_style *style = style_of(&objects[i]);
+		const size_t place = objects[i].id - 1;
+		items[i].look = number_of_template(lists, objects[i].shading_template);
+		items[i].opacity = (float)(1 - style->transparency);
+		lists->importances[place] = (float)style->importance;
+		lists->opacities[place] = items[i].opacity;
+		lists->looks[place] = items[i].look;
+		lists->transparent = lists->transparent || items[i].opacity < 1;
+	}
+	return GZ_OK;
+}
+
+static bool key_is_of(const struct gz_illustrate_key *key, const struct gz_object *object)
+{
+	return key->known && key->volume == object->volume && key->mesh == object->mesh &&
+	       key->revision == object->data_revision;
+}
+
+/* Take over what is known of the objects that were shown before. Returns whether all stay where
+ * they are. */
+static bool take_known(struct gz_illustrate_scene *scene, const struct gz_object *objects,
+		       struct gz_illustrate_item *items, size_t count)
+{
+	bool same = count == scene->count;
+	for (size_t i = 0; i < count; i++) {
+		size_t old =
+			i < scene->count && key_is_of(&scene->items[i].key, &objects[i]) ? i : 0;
+		while (old < scene->count && !key_is_of(&scene->items[old].key, &objects[i]))
+			old++;
+		same = same && old == i;
+		if (old == scene->count)
+			continue;
+		struct gz_illustrate_item *from = &scene->items[old];
+		items[i].key = from->key;
+		items[i].vertices = from->vertices;
+		from->key.known = false;
+		from->vertices = NULL;
+	}
+	return same;
+}
+
+enum gz_result gz_illustrate_scene_show(struct gz_illustrate_scene *scene,
+					const struct gz_object *objects, size_t count)
+{
+	struct gz_illustrate_scene lists = { 0 };
+	enum gz_result result = check_illustrated(objects, count);
 	if (result != GZ_OK)
 		return result;
-	const size_t ids = greatest_id(objects, count);
 	struct gz_illustrate_item *items = calloc(count, sizeof *items);
-	struct gz_illustrate_mesh *listed = calloc(count, sizeof *listed);
-	float *importances = calloc(ids + 1, sizeof *importances);
-	const size_t old_count = scene->meshes.count;
-	result = items && listed && importances ? GZ_OK : GZ_ERR_NO_MEM;
+	result = items ? make_lists(objects, count, items, &lists) : GZ_ERR_NO_MEM;
 	if (result == GZ_OK)
 		result = gz_surface_meshes_show(&scene->meshes, objects, count);
 	if (result != GZ_OK) {
 		free(items);
-		free(listed);
-		free(importances);
+		free_lists(&lists);
 		return result;
 	}
-	free_items(scene, old_count);
-	for (size_t i = 0; i < count; i++) {
-		importances[objects[i].id - 1] = each ? (float)each[i].importance : 0.5F;
-		items[i].input = each ? each[i].input : NULL;
-	}
+	const bool same = take_known(scene, objects, items, count);
+	free_items(scene->items, scene->count);
+	free_lists(scene);
 	scene->items = items;
-	scene->listed = listed;
-	scene->importances = importances;
-	scene->importance_count = ids;
+	scene->count = count;
+	scene->listed = lists.listed;
+	scene->importances = lists.importances;
+	scene->opacities = lists.opacities;
+	scene->looks = lists.looks;
+	scene->id_count = lists.id_count;
+	scene->templates = lists.templates;
+	scene->template_count = lists.template_count;
+	scene->transparent = lists.transparent;
+	scene->built = scene->built && same;
+	scene->measured_id = same ? scene->measured_id : 0;
 	return GZ_OK;
 }
 
@@ -119,26 +207,72 @@ static enum gz_result pack_vertices(const struct gz_shading_vertices *vertices,
 	return GZ_OK;
 }
 
-/* Make the vertices of an object. Objects of one input keep files of their own. */
+static struct gz_illustrate_key key_of(const struct gz_illustrate_scene *scene, size_t index)
+{
+	const struct gz_surface_item *item = &scene->meshes.items[index];
+	return (struct gz_illustrate_key) {
+		.known = true,
+		.volume = item->object.volume,
+		.mesh = item->object.mesh,
+		.revision = item->object.data_revision,
+		.isovalue = item->object.mesh ? 0 : item->isovalue,
+	};
+}
+
+static bool is_same_key(const struct gz_illustrate_key *a, const struct gz_illustrate_key *b)
+{
+	return a->known == b->known && a->volume == b->volume && a->mesh == b->mesh &&
+	       a->revision == b->revision && a->isovalue == b->isovalue;
+}
+
+/* Make the vertices of an object. Those of files are kept, each of one input in a file of its own;
+ * surfaces of volumes are not, because there is one for each isovalue. */
 static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t index,
 				   struct gz_workers *workers)
 {
 	struct gz_illustrate_item *item = &scene->items[index];
+	const struct gz_object *object = &scene->meshes.items[index].object;
+	const bool is_kept = object->mesh && object->input;
 	char ending[32];
-	snprintf(ending, sizeof ending, "%u.shading",
-		 (unsigned)scene->meshes.items[index].object.id);
-	const struct gz_mesh_cache_place place = { item->input, ending };
+	snprintf(ending, sizeof ending, "%u.shading", (unsigned)object->id);
+	const struct gz_mesh_cache_place place = { object->input, ending };
 	struct gz_shading_vertices vertices;
 	free(item->vertices);
 	item->vertices = NULL;
+	item->key.known = false;
 	enum gz_result result =
-		gz_shading_vertices_make(&scene->meshes.shown[index], item->input ? &place : NULL,
+		gz_shading_vertices_make(&scene->meshes.shown[index], is_kept ? &place : NULL,
 					 workers, scene->log, &vertices);
 	if (result != GZ_OK)
 		return result;
 	result = pack_vertices(&vertices, &item->vertices);
 	gz_shading_vertices_free(&vertices);
+	if (result == GZ_OK)
+		item->key = key_of(scene, index);
 	return result;
+}
+
+/* Make the vertices that are not known, and the tree if any of them is new. */
+static enum gz_result prepare_items(struct gz_illustrate_scene *scene, struct gz_workers *workers)
+{
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < scene->count && result == GZ_OK; i++) {
+		const struct gz_illustrate_key key = key_of(scene, i);
+		if (is_same_key(&key, &scene->items[i].key))
+			continue;
+		scene->built = false;
+		result = prepare_item(scene, i, workers);
+	}
+	if (result != GZ_OK || scene->built)
+		return result;
+	scene->measured_id = 0;
+	result = gz_surface_tree_build(&scene->tree, scene->meshes.shown, scene->count);
+	if (result != GZ_OK)
+		return result;
+	bound_scene(scene);
+	scene->made++;
+	scene->built = true;
+	return GZ_OK;
 }
 
 static void list_illustrated(struct gz_illustrate_scene *scene)
@@ -148,6 +282,8 @@ static void list_illustrated(struct gz_illustrate_scene *scene)
 			.triangles = (const uint32_t(*)[3])scene->meshes.shown[i].triangles,
 			.vertices = scene->items[i].vertices,
 			.id = scene->meshes.items[i].object.id,
+			.look = scene->items[i].look,
+			.transparent = scene->items[i].opacity < 1,
 		};
 }
 
@@ -193,22 +329,10 @@ enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene, do
 	bool new_meshes = false;
 	enum gz_result result =
 		gz_surface_meshes_make(&scene->meshes, isovalue, workers, &new_meshes);
-	scene->current = scene->current && scene->meshes.listed && !new_meshes;
+	if (result == GZ_OK)
+		result = prepare_items(scene, workers);
 	if (result != GZ_OK)
 		return result;
-	if (!scene->current) {
-		scene->measured_id = 0;
-		for (size_t i = 0; i < scene->meshes.count && result == GZ_OK; i++)
-			result = prepare_item(scene, i, workers);
-		if (result == GZ_OK)
-			result = gz_surface_tree_build(&scene->tree, scene->meshes.shown,
-						       scene->meshes.count);
-		if (result != GZ_OK)
-			return result;
-		bound_scene(scene);
-		scene->made++;
-		scene->current = true;
-	}
 	if (chosen_id > 0 && scene->measured_id != chosen_id)
 		result = measure_scene(scene, chosen_id, workers);
 	list_illustrated(scene);
@@ -217,7 +341,10 @@ enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene, do
 
 void gz_illustrate_scene_free(struct gz_illustrate_scene *scene)
 {
-	free_items(scene, scene->meshes.count);
+	free_items(scene->items, scene->count);
+	free_lists(scene);
+	scene->items = NULL;
+	scene->count = 0;
 	gz_surface_meshes_free(&scene->meshes);
 	gz_surface_tree_close(&scene->tree);
 }

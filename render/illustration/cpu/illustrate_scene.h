@@ -13,9 +13,20 @@
 #include "render/surface/cpu/surface_tree.h"
 #include "render/surface/shared/surface_meshes.h"
 
+/** What vertices were made of. */
+struct gz_illustrate_key {
+	bool known; /**< they are there */
+	const struct gz_volume *volume;
+	const struct gz_mesh *mesh;
+	uint64_t revision;
+	double isovalue; /**< of a volume's surface */
+};
+
 /** One object's vertices. */
 struct gz_illustrate_item {
-	const char *input;                     /**< borrowed; NULL: nothing is kept */
+	unsigned look; /**< its template: see struct gz_illustrate_scene */
+	float opacity; /**< [0, 1] */
+	struct gz_illustrate_key key;
 	struct gz_illustrate_vertex *vertices; /**< of the mesh that is shown; NULL: not made */
 };
 
@@ -24,20 +35,26 @@ struct gz_illustrate_scene {
 	const struct gz_log *log; /**< may be NULL; borrowed */
 	struct gz_surface_meshes meshes;
 	struct gz_surface_tree tree;
-	struct gz_illustrate_item *items;  /**< meshes.count */
+	struct gz_illustrate_item *items; /**< of the meshes; count of them */
+	size_t count;
 	struct gz_illustrate_mesh *listed; /**< as rays read them */
-	float *importances;                /**< of object 1 to importance_count */
-	size_t importance_count;
+	float *importances;                /**< of object 1 to id_count */
+	float *opacities;                  /**< likewise; 1 where there is no object */
+	unsigned *looks;                   /**< likewise; 0 where there is no object */
+	size_t id_count;
+	/** The templates of all objects, each once; the first is none. */
+	const struct gz_shading_template **templates;
+	size_t template_count;
+	bool transparent;               /**< any object is */
 	uint32_t measured_id;           /**< object that distances are to; 0: none */
 	double centre_mm[3], radius_mm; /**< of a ball around all vertices */
 	unsigned made;                  /**< how often any of it was made */
-	bool current;                   /**< tree, vertices and ball are those of meshes.shown */
+	bool built;                     /**< tree and ball are those of the items' keys */
 };
 
 /** gz_illustrate_caster_show(). */
 enum gz_result gz_illustrate_scene_show(struct gz_illustrate_scene *scene,
-					const struct gz_object *objects,
-					const struct gz_illustrated *each, size_t count);
+					const struct gz_object *objects, size_t count);
 
 /**
  * Make what is missing for a picture.

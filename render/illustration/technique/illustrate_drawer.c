@@ -35,7 +35,7 @@ static enum gz_result illustrate_show(struct gz_drawer *drawer, const struct gz_
 	if (!copy)
 		return GZ_ERR_NO_MEM;
 	memcpy(copy, objects, count * sizeof *copy);
-	const enum gz_result result = gz_illustrate_caster_show(self->caster, objects, NULL, count);
+	const enum gz_result result = gz_illustrate_caster_show(self->caster, objects, count);
 	if (result != GZ_OK) {
 		free(copy);
 		return result;
@@ -60,14 +60,12 @@ static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_
 {
 	const struct illustrate_drawer *self = illustrate_read(drawer);
 	const struct gz_ray_params *rays = shot->settings;
-	struct gz_shading_settings settings;
 	if (!image || !gz_ray_params_valid(rays))
 		return GZ_ERR_INVAL;
-	gz_illustration_look_resolve(&rays->illustration, &settings);
 	const struct gz_illustrate_shot illustrated = {
 		.camera = shot->camera,
 		.plan = shot->plan,
-		.settings = &settings,
+		.look = &rays->illustration,
 		.clip = &rays->clip,
 		.isovalue = rays->surface.isovalue,
 		.chosen_id = find_named_object(self, rays->illustration.chosen_object),
