@@ -290,6 +290,7 @@ static void make_curve(struct gz_shading_picture *picture, float equalisation)
 		for (size_t bin = 0; bin < GZ_TONE_BINS; bin++)
 			all->counts[bin] += picture->rooms[i].histogram.counts[bin];
 	gz_tone_curve_make(all, 1, &picture->curve);
+	gz_tone_curve_steady(&picture->curve);
 	gz_tone_curve_soften(equalisation, &picture->curve);
 }
 

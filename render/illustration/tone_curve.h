@@ -41,6 +41,20 @@ void gz_tone_count(const void *map, const uint32_t *ids, size_t count, size_t st
 void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count,
 			struct gz_tone_curve *out_curve);
 
+/** How much brighter than its tone a pixel gets at most when a tone rises by so much: the steepest
+ * rise of a steadied curve. Chosen: scans stay equalised nearly as before. */
+#define GZ_TONE_RISE_MOST 7
+
+/**
+ * Keep frames alike that differ little. A flat surface has one tone, at which the curve leaps from 0
+ * to 1: whatever changes that tone a little, as another view or another place of the gaze, would
+ * make it black or white. So each tone counts for those around it, 1/64 of their range, and where
+ * still more than GZ_TONE_RISE_MOST - 1 times the mean share of pixels has a tone, the rest is
+ * spread over all tones (contrast limits: Zuiderveld, Graphics Gems IV, 1994). The curve still
+ * rises, up to 1.
+ */
+void gz_tone_curve_steady(struct gz_tone_curve *curve);
+
 /** Mix a curve with the one that changes nothing: @p share of the curve, [0, 1]. */
 void gz_tone_curve_soften(float share, struct gz_tone_curve *curve);
 

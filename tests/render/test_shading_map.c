@@ -228,6 +228,32 @@ static void tone_without_objects_stays(void **state)
 	assert_int_equal(empty.counts[GZ_TONE_BINS - 1], 3);
 }
 
+/* Two tones that are hardly apart stay so, in whatever share of pixels; a picture with many tones
+ * is equalised as it would be. */
+static void steadied_tones_rise_evenly(void **state)
+{
+	(void)state;
+	static struct gz_tone_histogram narrow, wide;
+	static struct gz_tone_curve curve, exact;
+	memset(&narrow, 0, sizeof narrow);
+	memset(&wide, 0, sizeof wide);
+	narrow.counts[2000] = narrow.counts[2001] = 1000;
+	gz_tone_curve_make(&narrow, 1, &curve);
+	gz_tone_curve_steady(&curve);
+	assert_true(curve.values[0] >= 0 && curve.values[GZ_TONE_BINS - 1] == 1);
+	for (int bin = 1; bin < GZ_TONE_BINS; bin++) {
+		const double rise = (double)(curve.values[bin] - curve.values[bin - 1]);
+		assert_true(rise >= 0 && rise * GZ_TONE_BINS <= GZ_TONE_RISE_MOST + 0.01);
+	}
+	for (int bin = 400; bin < 3600; bin++)
+		wide.counts[bin] = 20 + (uint32_t)(bin % 7);
+	gz_tone_curve_make(&wide, 1, &exact);
+	curve = exact;
+	gz_tone_curve_steady(&curve);
+	for (int bin = 0; bin < GZ_TONE_BINS; bin++)
+		assert_float_equal(curve.values[bin], exact.values[bin], 0.006);
+}
+
 /* ---- lines ---- */
 
 /* Planes that lines are found in. */
@@ -549,6 +575,7 @@ TEST_SUITE(shading_map)
 		cmocka_unit_test(blur_of_cells_is_that_of_pixels),
 		cmocka_unit_test(tone_becomes_the_share_of_pixels_no_brighter),
 		cmocka_unit_test(tone_without_objects_stays),
+		cmocka_unit_test(steadied_tones_rise_evenly),
 		cmocka_unit_test(silhouettes_lie_on_the_nearer_object),
 		cmocka_unit_test(order_of_ids_does_not_matter),
 		cmocka_unit_test(steps_within_an_object_are_inner_lines),
