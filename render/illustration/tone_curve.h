@@ -46,8 +46,8 @@ void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count
 #define GZ_TONE_RISE_MOST 7
 
 /**
- * Keep frames alike that differ little. A flat surface has one tone, at which the curve leaps from 0
- * to 1: whatever changes that tone a little, as another view or another place of the gaze, would
+ * Keep frames alike that differ little. A flat surface has one tone, at which the curve leaps from
+ * 0 to 1: whatever changes that tone a little, as another view or another place of the gaze, would
  * make it black or white. So each tone counts for those around it, 1/64 of their range, and where
  * still more than GZ_TONE_RISE_MOST - 1 times the mean share of pixels has a tone, the rest is
  * spread over all tones (contrast limits: Zuiderveld, Graphics Gems IV, 1994). The curve still

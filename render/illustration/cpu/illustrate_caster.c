@@ -239,7 +239,7 @@ static enum gz_result fill_illustrate_looks(struct gz_illustrate_caster *caster,
 	gz_illustration_look_resolve(look, NULL, &job->settings);
 	for (size_t k = 0; k < scene->template_count; k++) {
 		struct gz_shading_settings settings;
-		gz_illustration_look_resolve(look, scene->templates[k], &settings);
+		gz_illustration_look_resolve(look, scene->templates[k].said, &settings);
 		caster->looks[k] = look_of(&settings, camera);
 		const struct gz_shading_weights weights = weights_of(&settings);
 		for (size_t i = 0; i < scene->id_count; i++)

@@ -66,9 +66,9 @@ static unsigned number_of_template(struct gz_illustrate_scene *lists,
 				   const struct gz_shading_template *wanted)
 {
 	for (size_t i = 0; i < lists->template_count; i++)
-		if (lists->templates[i] == wanted)
+		if (lists->templates[i].said == wanted)
 			return (unsigned)i;
-	lists->templates[lists->template_count] = wanted;
+	lists->templates[lists->template_count].said = wanted;
 	return (unsigned)lists->template_count++;
 }
 

@@ -22,6 +22,11 @@ struct gz_illustrate_key {
 	double isovalue; /**< of a volume's surface */
 };
 
+/** A template of some objects. */
+struct gz_illustrate_template {
+	const struct gz_shading_template *said; /**< borrowed; NULL: none */
+};
+
 /** One object's vertices. */
 struct gz_illustrate_item {
 	unsigned look; /**< its template: see struct gz_illustrate_scene */
@@ -43,7 +48,7 @@ struct gz_illustrate_scene {
 	unsigned *looks;                   /**< likewise; 0 where there is no object */
 	size_t id_count;
 	/** The templates of all objects, each once; the first is none. */
-	const struct gz_shading_template **templates;
+	struct gz_illustrate_template *templates;
 	size_t template_count;
 	bool transparent;               /**< any object is */
 	uint32_t measured_id;           /**< object that distances are to; 0: none */
