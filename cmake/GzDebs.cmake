@@ -106,7 +106,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA "${debian}/postinst;${debian}/pr
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.9), python3-numpy, libgazecast${PROJECT_VERSION_MAJOR} (>= ${PROJECT_VERSION}), libgazecast-render${PROJECT_VERSION_MAJOR} (>= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "gazecast")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-nibabel, python3-psychopy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-matplotlib, python3-nibabel")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA "${debian}/python/postinst;${debian}/python/prerm")
 set(CPACK_DEBIAN_RENDER_PACKAGE_CONTROL_EXTRA "${debian_files}/libgazecast-render${PROJECT_VERSION_MAJOR}/symbols"
 	"${debian_files}/libgazecast-render${PROJECT_VERSION_MAJOR}/shlibs" "${debian_files}/libgazecast-render${PROJECT_VERSION_MAJOR}/triggers")

@@ -58,7 +58,7 @@ ask_scene() {
 apt-get update -q >/dev/null
 useradd --create-home visitor
 # What the packages need and recommend, and what the demo and this script call.
-apt-get satisfy -q -y --no-install-recommends "$(field Depends), $(field Recommends), $(field Suggests)" \
+apt-get satisfy -q -y --no-install-recommends "$(field Depends), $(field Recommends)" \
 	jq fonts-dejavu-core >/dev/null
 list_files >/tmp/before
 
