@@ -2,8 +2,11 @@
 #include "suite.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/captured_log.h"
 #include "mesh_fields.h"
@@ -261,6 +264,35 @@ static void surface_of_a_volume_follows_the_isovalue(void **state)
 	close_gallery(&gallery);
 }
 
+/* What is computed of a mesh is kept beside its file, by the object's name: another scene, in which
+ * the object has another place, finds it. */
+static void kept_files_are_named_after_their_objects(void **state)
+{
+	(void)state;
+	struct gallery gallery;
+	char folder[] = "/tmp/gazecast-kept-XXXXXX", input[64], kept[96];
+	struct stat first, second;
+	assert_non_null(mkdtemp(folder));
+	snprintf(input, sizeof input, "%s/ball.ply", folder);
+	snprintf(kept, sizeof kept, "%s.left_ear.shading", input);
+	open_gallery(&gallery);
+	gallery.object.name = "left ear";
+	gallery.object.input = input;
+	show_and_draw(&gallery);
+	assert_int_equal(stat(kept, &first), 0);
+	close_gallery(&gallery);
+	open_gallery(&gallery);
+	gallery.object.name = "left ear";
+	gallery.object.input = input;
+	gallery.object.id = 9;
+	show_and_draw(&gallery);
+	assert_int_equal(stat(kept, &second), 0);
+	assert_true(first.st_ino == second.st_ino);
+	close_gallery(&gallery);
+	assert_int_equal(unlink(kept), 0);
+	assert_int_equal(rmdir(folder), 0);
+}
+
 static void unknown_backends_are_refused_by_name(void **state)
 {
 	(void)state;
@@ -284,6 +316,7 @@ TEST_SUITE(illustrate_technique)
 		cmocka_unit_test(single_settings_count_only_if_asked_for),
 		cmocka_unit_test(clip_box_cuts),
 		cmocka_unit_test(surface_of_a_volume_follows_the_isovalue),
+		cmocka_unit_test(kept_files_are_named_after_their_objects),
 		cmocka_unit_test(unknown_backends_are_refused_by_name),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

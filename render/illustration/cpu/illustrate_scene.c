@@ -1,14 +1,19 @@
 #include "render/illustration/cpu/illustrate_scene.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "render/illustration/shading_vertices.h"
 #include "render/mesh/distance/mesh_distance.h"
 #include "render/mesh/mesh_read.h"
 
 #define GZ_LOG_MODULE "illustration"
+
+/* Most of an object's name that the name of its kept file holds, and room for the whole ending. */
+enum { KEPT_NAME_MAX = 48, KEPT_ENDING_SIZE = 64 };
 
 /* Free what is known of items that are not shown any more. */
 static void free_items(struct gz_illustrate_item *items, size_t count)
@@ -225,6 +230,20 @@ static bool is_same_key(const struct gz_illustrate_key *a, const struct gz_illus
 	       a->revision == b->revision && a->isovalue == b->isovalue;
 }
 
+/* How the name of an object's kept file ends: by the object's own name, which other scenes of the
+ * same input give it too, not by its place in this one. */
+static void name_kept_file(const struct gz_object *object, char out_ending[KEPT_ENDING_SIZE])
+{
+	if (!object->name || !object->name[0]) {
+		snprintf(out_ending, KEPT_ENDING_SIZE, "%u.shading", (unsigned)object->id);
+		return;
+	}
+	snprintf(out_ending, KEPT_ENDING_SIZE, "%.*s.shading", KEPT_NAME_MAX, object->name);
+	for (size_t i = 0; out_ending[i]; i++)
+		if (!isalnum((unsigned char)out_ending[i]) && !strchr("._-", out_ending[i]))
+			out_ending[i] = '_';
+}
+
 /* Make the vertices of an object. Those of files are kept, each of one input in a file of its own;
  * surfaces of volumes are not, because there is one for each isovalue. */
 static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t index,
@@ -233,8 +252,8 @@ static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t ind
 	struct gz_illustrate_item *item = &scene->items[index];
 	const struct gz_object *object = &scene->meshes.items[index].object;
 	const bool is_kept = object->mesh && object->input;
-	char ending[32];
-	snprintf(ending, sizeof ending, "%u.shading", (unsigned)object->id);
+	char ending[KEPT_ENDING_SIZE];
+	name_kept_file(object, ending);
 	const struct gz_mesh_cache_place place = { object->input, ending };
 	struct gz_shading_vertices vertices;
 	free(item->vertices);
