@@ -4,24 +4,37 @@
 #include "view/panels/file_dialogs.h"
 #include "view/panels/keys_panel.h"
 
-static const struct gz_keys_row row = { "files", "Ctrl+O", "open a scene or a volume" };
+static const struct gz_keys_row row = {
+	"files", "Ctrl+O", "open a scene or a volume", "load import"
+};
 
-static void row_is_found_by_words_of_help_keys_and_group(void **state)
+static void row_is_found_by_words_of_help_keys_group_and_others(void **state)
 {
 	(void)state;
-	assert_true(gz_keys_row_matches(&row, ""));
-	assert_true(gz_keys_row_matches(&row, "  "));
-	assert_true(gz_keys_row_matches(&row, "scene"));
-	assert_true(gz_keys_row_matches(&row, "volume open"));
-	assert_true(gz_keys_row_matches(&row, " SCE  ctrl FILE "));
+	assert_true(gz_keys_row_fits(&row, ""));
+	assert_true(gz_keys_row_fits(&row, "  "));
+	assert_true(gz_keys_row_fits(&row, "scene"));
+	assert_true(gz_keys_row_fits(&row, "volume open"));
+	assert_true(gz_keys_row_fits(&row, " SCE  ctrl FILE "));
+	assert_true(gz_keys_row_fits(&row, "import"));
 }
 
 static void row_without_one_of_the_words_is_not_found(void **state)
 {
 	(void)state;
-	assert_false(gz_keys_row_matches(&row, "save"));
-	assert_false(gz_keys_row_matches(&row, "open save"));
-	assert_false(gz_keys_row_matches(&row, "volumes"));
+	assert_false(gz_keys_row_fits(&row, "save"));
+	assert_false(gz_keys_row_fits(&row, "open save"));
+	assert_false(gz_keys_row_fits(&row, "volumes"));
+}
+
+static void whole_words_fit_better_than_parts_and_keys_better_than_settings(void **state)
+{
+	(void)state;
+	const struct gz_keys_row setting = { "Volume", NULL, "file: what is open", NULL };
+	assert_true(gz_keys_row_fits(&row, "open") > gz_keys_row_fits(&row, "ope"));
+	assert_true(gz_keys_row_fits(&row, "ope") > gz_keys_row_fits(&row, "pen"));
+	assert_true(gz_keys_row_fits(&row, "open") > gz_keys_row_fits(&setting, "open"));
+	assert_true(gz_keys_row_fits(&setting, "file") > 0);
 }
 
 static void progress_text_has_the_time_left_once_it_can_be_told(void **state)
@@ -41,8 +54,9 @@ static void progress_text_has_the_time_left_once_it_can_be_told(void **state)
 TEST_SUITE(keys_panel)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(row_is_found_by_words_of_help_keys_and_group),
+		cmocka_unit_test(row_is_found_by_words_of_help_keys_group_and_others),
 		cmocka_unit_test(row_without_one_of_the_words_is_not_found),
+		cmocka_unit_test(whole_words_fit_better_than_parts_and_keys_better_than_settings),
 		cmocka_unit_test(progress_text_has_the_time_left_once_it_can_be_told),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

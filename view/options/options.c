@@ -94,6 +94,8 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "short for --view.letters" },
 	{ "fullscreen", GZ_OPTION_BOOL, AT(fullscreen), .preset = "false",
 	  .help = "start with a full-screen window" },
+	{ "menu", GZ_OPTION_BOOL, AT(menu), .preset = "true",
+	  .help = "start with a menu bar; U shows and hides it" },
 	{ "vsync", GZ_OPTION_BOOL, AT(vsync), .preset = "true", .help = "short for --view.vsync" },
 	{ "interface-scale", GZ_OPTION_DOUBLE, AT(interface_scale), 0, 8, .preset = "0",
 	  .help = "size of text and panels; 1 is small; 0: from the display" },

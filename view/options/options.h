@@ -20,7 +20,7 @@
 #include "view/settings/scene_keys.h"
 
 /** Upper limit of gz_view_option_count. */
-#define GZ_VIEW_OPTIONS_MAX 64
+#define GZ_VIEW_OPTIONS_MAX 80
 
 /** Kind of gaze source. */
 enum gz_gaze_kind {
@@ -82,6 +82,7 @@ struct gz_view_options {
 	bool cross;
 	bool letters;
 	bool fullscreen;
+	bool menu; /**< the menu bar is shown */
 	bool vsync;
 	double interface_scale; /**< 0: from the display */
 	int measure_window;     /**< frames of each kind; 0: do not measure */

@@ -302,7 +302,7 @@ static bool draw_layout_guesses(struct gz_raw_panel *panel)
 				opened |= twice || gz_widgets_enter_pressed();
 			}
 			gz_widgets_same_line(0.3f);
-			gz_widget_label(panel->guesses[i].reason);
+			gz_widget_label(gz_paint_plain, panel->guesses[i].reason);
 			if (is_same_layout(layout, &now))
 				reason = panel->guesses[i].reason;
 		}
@@ -313,7 +313,7 @@ static bool draw_layout_guesses(struct gz_raw_panel *panel)
 
 static void draw_layout_label(const char *text, const char *tip)
 {
-	gz_widget_label(text);
+	gz_widget_label(gz_paint_plain, text);
 	gz_widget_tooltip(tip);
 	gz_widgets_same_line(LABEL_SHARE);
 	gz_widgets_next_width(0);

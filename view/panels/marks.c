@@ -74,7 +74,7 @@ float gz_marks_draw_low_caption(struct gz_paint paint, const char *text)
 	break_lines(wrapped, room.x - 2 * (side + edge));
 	const float height = gz_text_room(1, wrapped).y + 2 * edge;
 	const struct gz_place at = { side, floorf(room.y - side - height) };
-	gz_draw_caption(GZ_LAYER_TOP, at, paint, wrapped);
+	gz_draw_caption(GZ_LAYER_PICTURE, at, paint, wrapped);
 	return room.y - at.y;
 }
 

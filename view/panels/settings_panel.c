@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "view/panels/widgets.h"
+#include "view/settings/setting_label.h"
 
 /* Unscaled (chosen: three numbers fit beside their name). */
 #define WIDTH       380.0f
@@ -34,16 +35,6 @@ static int count_of_values(const struct gz_option *option)
 static size_t section_length(const struct gz_option *option)
 {
 	return strcspn(option->key, ".");
-}
-
-/* "render.ray_sampling_rate" is shown as "ray sampling rate". */
-static void print_label(const struct gz_option *option, char *text, size_t size)
-{
-	const char *dot = strrchr(option->key, '.');
-	snprintf(text, size, "%s", dot ? dot + 1 : option->key);
-	for (char *at = text; *at; at++)
-		if (*at == '_')
-			*at = ' ';
 }
 
 /* Whether a row is named after a method that is not the chosen one: "foveation.mdc_spacing" while
@@ -79,6 +70,7 @@ static struct gz_number_range range_of(const struct gz_option *option, double va
 		.slider = option->max - option->min <= SLIDER_RANGE_MAX,
 		.logarithmic = option->min > 0 && option->max > LINEAR_FACTOR_MAX * option->min,
 		.speed = fmax(fabs(value) / 100, whole ? 0.1 : 0.005),
+		.axes = gz_setting_axes(option),
 		.format = whole              ? "%d"
 			  : option->max <= 1 ? "%.3f"
 					     : "%.4g",
@@ -111,14 +103,22 @@ static bool draw_setting_widget(const struct gz_option *option, void *field)
 	return false;
 }
 
+static bool is_marked(const struct gz_settings_panel *panel, const struct gz_option *option)
+{
+	return panel->marked && strcmp(panel->marked, option->key) == 0;
+}
+
 static bool draw_setting(const struct gz_settings_panel *panel,
 			 const struct gz_option_binding *binding, const struct gz_option *option)
 {
-	char label[64];
-	print_label(option, label, sizeof label);
+	char label[GZ_SETTING_LABEL_SIZE];
+	const bool marked = is_marked(panel, option);
+	gz_setting_label(option, label);
 	gz_widgets_push_id(option->key);
+	if (marked && panel->reveal)
+		gz_widgets_scroll_here();
 	gz_widgets_disable(panel->applies && !panel->applies(panel->user, option->key));
-	gz_widget_label(label);
+	gz_widget_label(marked ? gz_paint_amber : gz_paint_plain, label);
 	gz_widget_tooltip(option->help);
 	gz_widgets_same_line(LABEL_SHARE);
 	gz_widgets_next_width(0);
@@ -127,15 +127,6 @@ static bool draw_setting(const struct gz_settings_panel *panel,
 	gz_widgets_enable();
 	gz_widgets_pop_id();
 	return changed;
-}
-
-static bool draw_section_heading(const struct gz_option *option)
-{
-	char heading[64];
-	snprintf(heading, sizeof heading, "%.*s", (int)section_length(option), option->key);
-	if (heading[0] >= 'a' && heading[0] <= 'z')
-		heading[0] = (char)(heading[0] - 'a' + 'A');
-	return gz_widget_heading(heading, false);
 }
 
 static bool has_widget(const struct gz_option *option)
@@ -147,6 +138,18 @@ static bool same_section(const struct gz_option *a, const struct gz_option *b)
 {
 	const size_t length = section_length(a);
 	return length == section_length(b) && strncmp(a->key, b->key, length) == 0;
+}
+
+/* The section with the row that is searched for unfolds. */
+static bool draw_section_heading(const struct gz_settings_panel *panel,
+				 const struct gz_option *option)
+{
+	char heading[GZ_SETTING_LABEL_SIZE];
+	const size_t length = section_length(option);
+	gz_setting_section(option, heading);
+	if (panel->marked && panel->reveal && strncmp(panel->marked, option->key, length + 1) == 0)
+		gz_widgets_unfold_next();
+	return gz_widget_heading(heading, false);
 }
 
 /* A position in the concatenation of all tables; binding is count behind the last row. */
@@ -207,7 +210,7 @@ static bool draw_section(const struct gz_settings_panel *panel, const struct gz_
 			 const struct method *method)
 {
 	bool changed = false;
-	if (!draw_section_heading(section))
+	if (!draw_section_heading(panel, section))
 		return false;
 	for (struct row row = { 0, 0 }; find_setting_row(panel, &row); row.option++)
 		if (same_section(row_option(panel, row), section))

@@ -18,8 +18,10 @@ struct gz_settings_panel {
 	/** Whether the option with @p key has an effect at present; others are grey. NULL: all. */
 	bool (*applies)(const void *user, const char *key);
 	const void *user;
-	float margin_top; /**< kept free above it, screen coordinates */
-	bool open;        /**< false once its cross was clicked */
+	float margin_top;   /**< kept free above it, screen coordinates */
+	bool open;          /**< false once its cross was clicked */
+	const char *marked; /**< key of a row that is marked; NULL: none */
+	bool reveal;        /**< unfold its section and scroll to it */
 };
 
 /**

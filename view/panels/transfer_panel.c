@@ -309,9 +309,13 @@ static void draw_point_fields(struct gz_transfer_panel *panel)
 	shown_range(panel, range);
 	const double wide = range[1] - range[0];
 	double value = range[0] + point.value * wide, opacity = point.opacity;
-	const struct gz_number_range values = { range[0], range[1],   false,
-						false,    wide / 500, "value %.6g" };
-	const struct gz_number_range opacities = { 0, 1, false, false, 0.002, "opacity %.5g" };
+	const struct gz_number_range values = { .least = range[0],
+						.greatest = range[1],
+						.speed = wide / 500,
+						.format = "value %.6g" };
+	const struct gz_number_range opacities = { .greatest = 1,
+						   .speed = 0.002,
+						   .format = "opacity %.5g" };
 	gz_widgets_next_width(0.24f);
 	if (gz_widget_doubles("##value", &value, 1, &values)) {
 		begin_step(panel);
@@ -419,9 +423,10 @@ static void draw_range_fields(struct gz_transfer_panel *panel)
 	gz_widgets_same_line(0);
 	gz_widgets_disable(!own);
 	gz_widgets_next_width(0.42f);
-	const struct gz_number_range limits = {
-		-1e38, 1e38, false, false, (range[1] - range[0]) / 500, "%.6g"
-	};
+	const struct gz_number_range limits = { .least = -1e38,
+						.greatest = 1e38,
+						.speed = (range[1] - range[0]) / 500,
+						.format = "%.6g" };
 	if (gz_widget_doubles("##range", range, 2, &limits)) {
 		begin_step(panel);
 		gz_transfer_edit_range(panel->edit, range);
@@ -450,9 +455,9 @@ static enum gz_transfer_wish draw_file_row(struct gz_transfer_panel *panel)
 		wish = GZ_TRANSFER_WISH_SAVE;
 	gz_widgets_enable();
 	gz_widgets_same_line(0);
-	gz_widget_label(gz_transfer_edit_differs(panel->edit) ? "changed"
-			: panel->file[0]                      ? "as saved"
-							      : "not saved");
+	gz_widget_label(gz_paint_plain, gz_transfer_edit_differs(panel->edit) ? "changed"
+					: panel->file[0]                      ? "as saved"
+									      : "not saved");
 	return wish;
 }
 
@@ -464,7 +469,7 @@ static void draw_colour_note(const struct gz_transfer_panel *panel)
 		return;
 	snprintf(note, sizeof note, "Voxels have colours: the curve gives opacity by %s",
 		 gz_volume_colour_text(panel->volume->colour));
-	gz_widget_label(note);
+	gz_widget_label(gz_paint_plain, note);
 }
 
 static enum gz_transfer_wish draw_transfer_content(struct gz_transfer_panel *panel)

@@ -73,6 +73,7 @@ struct Memory {
 	bool enter_pressed, escape_pressed; /* since the last one */
 	int frames_since_tab;               /* Dear ImGui answers it after some */
 	bool in_columns;
+	bool in_bar;       /* the menu bar is being drawn */
 	float scale;       /* of the fonts and the style there are */
 	float asked_scale; /* 0: what the display says */
 };
@@ -194,8 +195,39 @@ struct Numbers {
 	const void *least, *greatest;
 };
 
+bool draw_numbers(const char *id, const Numbers &numbers, const gz_number_range &range);
+
+/* Each number in a field of its own, with its letter. */
+bool draw_lettered_numbers(const char *id, const Numbers &numbers, const gz_number_range &range)
+{
+	const size_t size = numbers.type == ImGuiDataType_Double ? sizeof(double) : sizeof(int);
+	gz_number_range alone = range;
+	bool changed = false;
+	char format[32];
+	alone.axes = nullptr;
+	alone.format = format;
+	ImGui::PushID(id);
+	ImGui::PushMultiItemsWidths(numbers.count, ImGui::CalcItemWidth());
+	for (int i = 0; i < numbers.count; i++) {
+		Numbers one = numbers;
+		one.values = static_cast<char *>(numbers.values) + static_cast<size_t>(i) * size;
+		one.count = 1;
+		snprintf(format, sizeof format, "%c %s", range.axes[i], range.format);
+		if (i > 0)
+			ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+		ImGui::PushID(i);
+		changed |= draw_numbers("", one, alone);
+		ImGui::PopID();
+		ImGui::PopItemWidth();
+	}
+	ImGui::PopID();
+	return changed;
+}
+
 bool draw_numbers(const char *id, const Numbers &numbers, const gz_number_range &range)
 {
+	if (range.axes)
+		return draw_lettered_numbers(id, numbers, range);
 	ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
 	if (!range.slider)
 		return ImGui::DragScalarN(id, numbers.type, numbers.values, numbers.count,
@@ -234,7 +266,8 @@ void let_keys_lead()
 	Memory &kept = memory();
 	if (kept.frames_since_tab < FRAMES_TO_ANSWER)
 		kept.frames_since_tab++;
-	if (io.NavVisible || kept.dialog_drawn || kept.frames_since_tab < FRAMES_TO_ANSWER)
+	if (io.NavVisible || kept.dialog_drawn || kept.frames_since_tab < FRAMES_TO_ANSWER ||
+	    ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
 		io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
 	else
 		io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
@@ -587,10 +620,12 @@ void gz_widget_text(gz_paint paint, const char *text)
 	ImGui::PopStyleColor();
 }
 
-void gz_widget_label(const char *text)
+void gz_widget_label(gz_paint paint, const char *text)
 {
+	ImGui::PushStyleColor(ImGuiCol_Text, colour(paint));
 	ImGui::AlignTextToFramePadding();
 	ImGui::TextUnformatted(text);
+	ImGui::PopStyleColor();
 }
 
 void gz_widget_tooltip(const char *text)
@@ -647,10 +682,11 @@ bool gz_widget_tall_row(const char *id, gz_tall_row *row)
 	return chosen;
 }
 
-bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right)
+bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right,
+			bool selected)
 {
 	const float start = ImGui::GetCursorPosX();
-	const bool chosen = ImGui::Selectable(id);
+	const bool chosen = ImGui::Selectable(id, selected);
 	ImGui::SameLine();
 	ImGui::SetCursorPosX(start);
 	ImGui::TextUnformatted(left);
@@ -768,6 +804,94 @@ bool gz_dialog_entered(void)
 bool gz_dialog_escaped(void)
 {
 	return memory().escape_pressed;
+}
+
+int gz_widgets_arrow_steps(void)
+{
+	return memory().presses[DOWN] - memory().presses[UP];
+}
+
+void gz_widgets_scroll_here(void)
+{
+	ImGui::SetScrollHereY();
+}
+
+void gz_widgets_unfold_next(void)
+{
+	ImGui::SetNextItemOpen(true);
+}
+
+float gz_menu_bar_begin(void)
+{
+	memory().in_bar = ImGui::BeginMainMenuBar();
+	return memory().in_bar ? ImGui::GetWindowHeight() : 0;
+}
+
+bool gz_menu_bar_button(const char *text)
+{
+	const ImGuiStyle &style = ImGui::GetStyle();
+	const float width = ImGui::CalcTextSize(text).x + style.ItemSpacing.x;
+	const float left = ImGui::GetWindowWidth() - width - style.WindowPadding.x;
+	if (left < ImGui::GetCursorPosX()) /* the window is too narrow */
+		return false;
+	ImGui::SetCursorPosX(left);
+	return ImGui::MenuItem(text);
+}
+
+void gz_menu_bar_end(void)
+{
+	if (memory().in_bar)
+		ImGui::EndMainMenuBar();
+}
+
+bool gz_menu_begin(const char *id)
+{
+	return ImGui::BeginMenu(id);
+}
+
+void gz_menu_end(void)
+{
+	ImGui::EndMenu();
+}
+
+bool gz_menu_choice(const gz_menu_row *row)
+{
+	return ImGui::MenuItem(row->name, row->keys, row->on, row->enabled);
+}
+
+void gz_menu_line(void)
+{
+	ImGui::Separator();
+}
+
+bool gz_menu_popup_begin(const char *id, bool open)
+{
+	if (open)
+		ImGui::OpenPopup(id);
+	return ImGui::BeginPopup(id);
+}
+
+void gz_menu_popup_end(void)
+{
+	ImGui::EndPopup();
+}
+
+bool gz_corner_button(const char *text)
+{
+	const float margin = MARGIN * gz_widgets_scale();
+	ImGui::SetNextWindowPos(ImVec2(ImGui::GetIO().DisplaySize.x - margin, margin),
+				ImGuiCond_Always, ImVec2(1, 0));
+	ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+	ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+	ImGui::Begin("##corner", nullptr,
+		     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
+			     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
+			     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
+			     ImGuiWindowFlags_NoNav);
+	const bool pressed = ImGui::SmallButton(text);
+	ImGui::End();
+	ImGui::PopStyleVar(2);
+	return pressed;
 }
 
 void gz_widget_progress(double share, const char *text)

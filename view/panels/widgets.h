@@ -227,7 +227,7 @@ void gz_widget_separator(void);
 void gz_widget_text(struct gz_paint paint, const char *text);
 
 /** Text in one line, aligned with widgets beside it. */
-void gz_widget_label(const char *text);
+void gz_widget_label(struct gz_paint paint, const char *text);
 
 /** A text that appears while the mouse rests on the last widget, even a disabled one. */
 void gz_widget_tooltip(const char *text);
@@ -261,9 +261,10 @@ struct gz_tall_row {
 /** Such a row. @return whether it was clicked or Enter pressed on it */
 bool gz_widget_tall_row(const char *id, struct gz_tall_row *row);
 
-/** A row of two texts, the second @p width (unscaled) from the left. @return whether it was clicked
- *  or Enter pressed on it */
-bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right);
+/** A row of two texts, the second @p width (unscaled) from the left. @param selected  it is marked
+ *  @return whether it was clicked or Enter pressed on it */
+bool gz_widget_pair_row(const char *id, float width, const char *left, const char *right,
+			bool selected);
 
 /** Begin @p count columns; widgets go into the first until gz_widget_columns_next(). */
 void gz_widget_columns_begin(const char *id, int count);
@@ -288,6 +289,7 @@ struct gz_number_range {
 	bool logarithmic;       /**< slider only; least above 0 */
 	double speed;
 	const char *format; /**< of printf, one number */
+	const char *axes;   /**< a letter before each number: "xyz"; NULL: none */
 };
 
 /** Fields for @p count ints, 1 to 4. @return whether one was changed */
@@ -327,6 +329,56 @@ bool gz_dialog_entered(void);
 
 /** Whether Escape was pressed. */
 bool gz_dialog_escaped(void);
+
+/** Presses of the arrow keys since the last frame, down positive. */
+int gz_widgets_arrow_steps(void);
+
+/** Scroll the panel so that the next widget is in its middle. */
+void gz_widgets_scroll_here(void);
+
+/** Unfold the next heading. */
+void gz_widgets_unfold_next(void);
+
+/** Begin the menu bar at the top of the window; call gz_menu_bar_end() whatever this returns.
+ *  @return its height; 0: it is not shown */
+float gz_menu_bar_begin(void);
+
+/** A button at the right end of the bar, behind all menus. @return whether it was pressed */
+bool gz_menu_bar_button(const char *text);
+
+/** End the bar. */
+void gz_menu_bar_end(void);
+
+/** Begin a menu of the bar, or a submenu. @return whether it is open; only then call gz_menu_end()
+ */
+bool gz_menu_begin(const char *id);
+
+/** End the menu. */
+void gz_menu_end(void);
+
+/** What a row of a menu shows. */
+struct gz_menu_row {
+	const char *name, *keys; /**< keys may be NULL */
+	bool on;                 /**< it is marked */
+	bool enabled;            /**< else it is grey */
+};
+
+/** A row of the open menu. @return whether it was chosen, which closes the menu */
+bool gz_menu_choice(const struct gz_menu_row *row);
+
+/** A line between rows of the open menu. */
+void gz_menu_line(void);
+
+/** Begin a menu at the mouse. @param open  show it from now on @return as gz_menu_begin(), but end
+ *  it by gz_menu_popup_end() */
+bool gz_menu_popup_begin(const char *id, bool open);
+
+/** End that menu. */
+void gz_menu_popup_end(void);
+
+/** A small button in the upper right corner of the window, in no panel. @return whether it was
+ *  pressed */
+bool gz_corner_button(const char *text);
 
 /** A progress bar with a text on it. @param share 0 to 1; below 0: not known */
 void gz_widget_progress(double share, const char *text);

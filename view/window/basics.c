@@ -37,6 +37,7 @@ static void toggle_settings(struct gz_window *window, int number)
 {
 	(void)number;
 	window->settings_open = !window->settings_open;
+	window->setting_marked = NULL;
 	gz_window_wake_panels(window);
 }
 
@@ -62,11 +63,21 @@ static void quit_program(struct gz_window *window, int number)
 	glfwSetWindowShouldClose(window->glfw, GLFW_TRUE);
 }
 
-#define METHOD(digit, method, text, what)                                            \
+static bool is_method(const struct gz_window *window, int method)
+{
+	return window->settings.foveation.method == method;
+}
+
+#define METHOD(digit, method, text, what, label)                                     \
 	{ .key = GLFW_KEY_##digit,                                                   \
 	  .number = (method),                                                        \
 	  .keys = (text),                                                            \
 	  .help = (what),                                                            \
+	  .name = (label),                                                           \
+	  .menu = GZ_MENU_PICTURE,                                                   \
+	  .submenu = "Method",                                                       \
+	  .on_picture = true,                                                        \
+	  .is_on = is_method,                                                        \
 	  .run = choose_method },                                                    \
 	{                                                                            \
 		.key = GLFW_KEY_KP_##digit, .number = (method), .run = choose_method \
@@ -77,34 +88,88 @@ static bool is_settings_open(const struct gz_window *window)
 	return window->settings_open;
 }
 
+static bool is_settings_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings_open;
+}
+
+static bool is_cross_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings.view.gaze_cursor;
+}
+
+static bool are_letters_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings.view.letters;
+}
+
+static bool is_fullscreen_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return glfwGetWindowMonitor(window->glfw) != NULL;
+}
+
 static const struct gz_window_action basics_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE, .applies = is_settings_open, .run = toggle_settings },
-	METHOD(1, 0, "1", "method standard: every ray"),
-	METHOD(2, 1, "2", "method mdc: a sharp square, coarse around it"),
-	METHOD(3, 2, "3", "method ddc: two ellipses"),
-	METHOD(4, 3, "4", "method acuity: as fine as the eye resolves"),
-	METHOD(5, 4, "5", "method mdc3: three squares"),
-	METHOD(6, 5, "6", "method uniform: the same everywhere"),
-	METHOD(7, 6, "7", "method table: spacings from a file"),
+	METHOD(1, 0, "1", "method standard: every ray", "Standard"),
+	METHOD(2, 1, "2", "method mdc: a sharp square, coarse around it", "MDC"),
+	METHOD(3, 2, "3", "method ddc: two ellipses", "DDC"),
+	METHOD(4, 3, "4", "method acuity: as fine as the eye resolves", "Acuity"),
+	METHOD(5, 4, "5", "method mdc3: three squares", "MDC3"),
+	METHOD(6, 5, "6", "method uniform: the same everywhere", "Uniform"),
+	METHOD(7, 6, "7", "method table: spacings from a file", "Table"),
 	{ .letter = 'c',
 	  .keys = "C",
 	  .help = "cross at the gaze",
+	  .name = "Cross at the gaze",
+	  .menu = GZ_MENU_GAZE,
+	  .section = 1,
+	  .on_picture = true,
+	  .words = "cursor point mark",
+	  .is_on = is_cross_on,
 	  .group = "gaze",
 	  .run = toggle_cross },
-	{ .letter = 'p', .keys = "P", .help = "all settings of the scene", .run = toggle_settings },
+	{ .letter = 'p',
+	  .keys = "P",
+	  .help = "all settings of the scene",
+	  .name = "All settings",
+	  .menu = GZ_MENU_EDIT,
+	  .section = 1,
+	  .on_picture = true,
+	  .words = "preferences options configuration",
+	  .is_on = is_settings_on,
+	  .run = toggle_settings },
 	{ .letter = 'l',
 	  .keys = "L",
 	  .help = "letters: sides of the patient",
+	  .name = "Sides of the patient",
+	  .menu = GZ_MENU_VIEW,
+	  .section = 2,
+	  .words = "orientation left right anterior",
+	  .is_on = are_letters_on,
 	  .run = toggle_letters },
 	{ .letter = 'f',
 	  .keys = "F F11",
 	  .help = "full screen",
+	  .name = "Full screen",
+	  .menu = GZ_MENU_VIEW,
+	  .section = 3,
+	  .on_picture = true,
+	  .words = "fullscreen maximise maximize",
+	  .is_on = is_fullscreen_on,
 	  .group = "window",
 	  .run = toggle_fullscreen },
 	{ .key = GLFW_KEY_F11, .run = toggle_fullscreen },
 	{ .letter = 'q',
 	  .keys = "Q or Esc",
 	  .help = "quit; Esc first closes open panels",
+	  .name = "Quit",
+	  .menu = GZ_MENU_FILE,
+	  .section = 3,
+	  .words = "exit close leave end",
 	  .group = "window",
 	  .run = quit_program },
 	{ .key = GLFW_KEY_ESCAPE, .run = quit_program },
@@ -113,6 +178,14 @@ static const struct gz_window_action basics_actions[] = {
 static bool setting_has_effect(const void *user, const char *key)
 {
 	return gz_setting_applies(user, key);
+}
+
+void gz_window_show_setting(struct gz_window *window, const char *key)
+{
+	window->settings_open = true;
+	window->setting_marked = key;
+	window->setting_reveal = true;
+	gz_window_wake_panels(window);
 }
 
 struct gz_settings_panel gz_window_settings_rows(const struct gz_window *window)
@@ -147,8 +220,13 @@ static void draw_basics(struct gz_window *window, const struct gz_window_gaze *g
 	struct gz_settings_panel panel = gz_window_settings_rows(window);
 	panel.margin_top = window->panels_top;
 	panel.open = true;
+	panel.marked = window->setting_marked;
+	panel.reveal = window->setting_reveal;
 	gz_settings_panel_draw(&panel);
 	window->settings_open = panel.open;
+	window->setting_reveal = false;
+	if (!panel.open)
+		window->setting_marked = NULL;
 }
 
 static bool cursor_follows(struct gz_window *window, const struct gz_window_gaze *gaze)

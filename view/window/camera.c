@@ -90,24 +90,33 @@ static void show_view(struct gz_window *window, int number)
 		gz_saved_view_parse(text, changed_camera(window));
 }
 
+static bool is_orthographic(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings.camera.projection == GZ_PROJECTION_ORTHOGRAPHIC;
+}
+
 #define ARROW(name, what, with, function)                                                       \
 	{                                                                                       \
 		.key = GLFW_KEY_##name, .modifiers = (with), .repeats = true, .number = (what), \
 		.applies = has_scene, .run = (function)                                         \
 	}
 
-#define AXIS(character, what)                                                        \
-	{                                                                            \
-		.letter = (character), .modifiers = GZ_KEY_SHIFT, .number = -(what), \
-		.applies = has_scene, .run = look_along                              \
+#define AXIS(character, with, what, side)                                                     \
+	{                                                                                     \
+		.letter = (character), .modifiers = (with), .number = (what), .name = (side), \
+		.menu = GZ_MENU_VIEW, .submenu = "Look from", .applies = has_scene,           \
+		.run = look_along                                                             \
 	}
 
-#define VIEW(which)                                                                                \
-	{ .key = GLFW_KEY_F##which, .number = (which)-1, .applies = has_scene, .run = show_view }, \
-	{                                                                                          \
-		.key = GLFW_KEY_F##which, .modifiers = GZ_KEY_SHIFT, .number = (which)-1,          \
-		.applies = has_scene, .run = save_view                                             \
+#define VIEW(which, with, text, where, function)                                        \
+	{                                                                               \
+		.key = GLFW_KEY_F##which, .modifiers = (with), .number = (which)-1,     \
+		.name = (text), .menu = GZ_MENU_VIEW, .section = 1, .submenu = (where), \
+		.applies = has_scene, .run = (function)                                 \
 	}
+#define SHOW_VIEW(which)  VIEW(which, 0, "View " #which, "Stored views", show_view)
+#define STORE_VIEW(which) VIEW(which, GZ_KEY_SHIFT, "As view " #which, "Store this view", save_view)
 
 static const struct gz_window_action camera_actions[] = {
 	{ .key = GLFW_KEY_LEFT,
@@ -144,42 +153,62 @@ static const struct gz_window_action camera_actions[] = {
 	{ .letter = 'o',
 	  .keys = "O",
 	  .help = "perspective or orthographic",
+	  .name = "Orthographic",
+	  .menu = GZ_MENU_VIEW,
+	  .words = "parallel projection perspective",
+	  .is_on = is_orthographic,
 	  .applies = has_scene,
 	  .run = switch_projection },
 	{ .letter = 'x',
 	  .number = 1,
 	  .keys = "X Y Z",
 	  .help = "look from right, front, above; Shift: opposite",
+	  .name = "The right",
+	  .menu = GZ_MENU_VIEW,
+	  .submenu = "Look from",
+	  .words = "axis sagittal coronal axial left back below",
 	  .applies = has_scene,
 	  .run = look_along },
-	{ .letter = 'y', .number = 2, .applies = has_scene, .run = look_along },
-	{ .letter = 'z', .number = 3, .applies = has_scene, .run = look_along },
-	AXIS('x', 1),
-	AXIS('y', 2),
-	AXIS('z', 3),
+	AXIS('y', 0, 2, "The front"),
+	AXIS('z', 0, 3, "Above"),
+	AXIS('x', GZ_KEY_SHIFT, -1, "The left"),
+	AXIS('y', GZ_KEY_SHIFT, -2, "Behind"),
+	AXIS('z', GZ_KEY_SHIFT, -3, "Below"),
 	{ .letter = 'r',
 	  .keys = "R",
 	  .help = "reset the camera to the scene's",
+	  .name = "Reset the camera",
+	  .menu = GZ_MENU_VIEW,
+	  .on_picture = true,
+	  .words = "home fit centre center view",
 	  .applies = has_scene,
 	  .run = reset_camera },
 	{ .key = GLFW_KEY_F1,
 	  .number = 0,
 	  .keys = "F1 to F8",
 	  .help = "show a stored view; with Shift store this one",
+	  .name = "View 1",
+	  .menu = GZ_MENU_VIEW,
+	  .section = 1,
+	  .submenu = "Stored views",
+	  .words = "bookmark camera",
 	  .applies = has_scene,
 	  .run = show_view },
-	{ .key = GLFW_KEY_F1,
-	  .modifiers = GZ_KEY_SHIFT,
-	  .number = 0,
-	  .applies = has_scene,
-	  .run = save_view },
-	VIEW(2),
-	VIEW(3),
-	VIEW(4),
-	VIEW(5),
-	VIEW(6),
-	VIEW(7),
-	VIEW(8),
+	SHOW_VIEW(2),
+	SHOW_VIEW(3),
+	SHOW_VIEW(4),
+	SHOW_VIEW(5),
+	SHOW_VIEW(6),
+	SHOW_VIEW(7),
+	SHOW_VIEW(8),
+	STORE_VIEW(1),
+	STORE_VIEW(2),
+	STORE_VIEW(3),
+	STORE_VIEW(4),
+	STORE_VIEW(5),
+	STORE_VIEW(6),
+	STORE_VIEW(7),
+	STORE_VIEW(8),
 };
 
 /* What a drag does. */

@@ -305,21 +305,41 @@ static void close_capture(struct gz_window *window)
 	finish_picture(window->capture);
 }
 
+static bool is_video_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->capture->video.video != NULL;
+}
+
 static const struct gz_window_action capture_actions[] = {
 	{ .key = GLFW_KEY_F10,
 	  .keys = "F10",
 	  .help = "start or stop a video of the picture",
+	  .name = "Video",
+	  .menu = GZ_MENU_FILE,
+	  .section = 2,
+	  .words = "movie film record mp4 capture",
+	  .is_on = is_video_on,
 	  .run = toggle_video },
 	{ .key = GLFW_KEY_F12,
 	  .number = PICTURE,
 	  .keys = "F12",
 	  .help = "save the picture, with its scene in it",
+	  .name = "Save picture",
+	  .menu = GZ_MENU_FILE,
+	  .section = 2,
+	  .on_picture = true,
+	  .words = "screenshot image png export capture",
 	  .run = want_picture },
 	{ .key = GLFW_KEY_F12,
 	  .modifiers = GZ_KEY_SHIFT,
 	  .number = WITH_PANELS,
 	  .keys = "Shift+F12",
 	  .help = "save the whole window as a picture",
+	  .name = "Save window as picture",
+	  .menu = GZ_MENU_FILE,
+	  .section = 2,
+	  .words = "screenshot image png panels capture",
 	  .run = want_picture },
 };
 

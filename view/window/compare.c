@@ -51,6 +51,19 @@ static void choose_next_compare(struct gz_window *window, int number)
 	window->present_needed = true;
 }
 
+/* Show it, or hide it if it is shown. */
+static void switch_compare(struct gz_window *window, int kind)
+{
+	int *compare = &window->settings.view.compare;
+	*compare = *compare == kind ? GZ_COMPARE_NONE : kind;
+	window->present_needed = true;
+}
+
+static bool is_compared(const struct gz_window *window, int kind)
+{
+	return window->settings.view.compare == kind;
+}
+
 static void move_split(struct gz_window *window, int direction)
 {
 	double *split = &window->settings.view.split;
@@ -69,7 +82,31 @@ static const struct gz_window_action compare_actions[] = {
 	{ .letter = 'v',
 	  .keys = "V",
 	  .help = "compare with standard: split, difference, off",
+	  .name = "Next comparison",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Compare with standard",
+	  .words = "split side by side reference quality",
 	  .run = choose_next_compare },
+	{ .number = GZ_COMPARE_SPLIT,
+	  .help = "standard on the right of a divider",
+	  .name = "Side by side",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Compare with standard",
+	  .on_picture = true,
+	  .words = "split",
+	  .is_on = is_compared,
+	  .run = switch_compare },
+	{ .number = GZ_COMPARE_DIFFERENCE,
+	  .help = "difference from standard, amplified",
+	  .name = "Difference",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Compare with standard",
+	  .on_picture = true,
+	  .is_on = is_compared,
+	  .run = switch_compare },
 	{ .key = GLFW_KEY_LEFT,
 	  .modifiers = GZ_KEY_CONTROL,
 	  .repeats = true,

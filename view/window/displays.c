@@ -235,6 +235,10 @@ static const struct gz_window_action displays_actions[] = {
 	{ .letter = 'd',
 	  .keys = "D",
 	  .help = "full screen on the tracker's display",
+	  .name = "Full screen on the tracker's display",
+	  .menu = GZ_MENU_VIEW,
+	  .section = 3,
+	  .words = "fullscreen monitor",
 	  .run = fill_tracker_display },
 };
 

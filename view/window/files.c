@@ -152,6 +152,17 @@ static void show_open_panel(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
+static void load_again_resampled(struct gz_window *window, int number)
+{
+	(void)number;
+	gz_window_load_resampled(window);
+}
+
+static bool may_open_files(const struct gz_window *window)
+{
+	return !window->alone; /* an experiment shows its own scenes */
+}
+
 /* Of several files the first is opened; a DICOM slice stands for its series. */
 static void on_drop(GLFWwindow *glfw, int count, const char *paths[])
 {
@@ -315,16 +326,36 @@ static const struct gz_window_action files_actions[] = {
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+O",
 	  .help = "open a scene, a volume or a picture",
+	  .name = "Open...",
+	  .menu = GZ_MENU_FILE,
+	  .on_picture = true,
+	  .words = "load import dicom nifti file browse",
 	  .run = show_open_panel },
+	{ .letter = 'o',
+	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
+	  .keys = "Ctrl+Shift+O",
+	  .help = "open it again, resample uneven slices",
+	  .name = "Open again, resampled",
+	  .menu = GZ_MENU_FILE,
+	  .words = "reload dicom",
+	  .applies = may_open_files,
+	  .run = load_again_resampled },
 	{ .letter = 's',
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+S",
 	  .help = "save the scene",
+	  .name = "Save scene",
+	  .menu = GZ_MENU_FILE,
+	  .section = 1,
+	  .words = "store keep write",
 	  .run = save_scene },
 	{ .letter = 's',
 	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
 	  .keys = "Ctrl+Shift+S",
 	  .help = "save the scene as another file",
+	  .name = "Save scene as...",
+	  .menu = GZ_MENU_FILE,
+	  .section = 1,
 	  .run = show_save_panel },
 };
 

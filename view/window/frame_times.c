@@ -157,11 +157,22 @@ static bool are_frame_times_open(const struct gz_window *window)
 	return window->settings.view.frame_times;
 }
 
+static bool are_frame_times_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings.view.frame_times;
+}
+
 static const struct gz_window_action frame_times_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE, .applies = are_frame_times_open, .run = toggle_frame_times },
 	{ .letter = 'b',
 	  .keys = "B",
 	  .help = "frame times, and a slider for the time budget",
+	  .name = "Frame times and budget",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 2,
+	  .words = "fps speed performance panel",
+	  .is_on = are_frame_times_on,
 	  .run = toggle_frame_times },
 };
 
@@ -206,7 +217,7 @@ static void draw_budget(struct gz_window *window)
 		.format = "%.0f ms",
 	};
 	gz_widgets_disable(!gz_setting_applies(&window->settings, "attention.budget_ms"));
-	gz_widget_label("time budget");
+	gz_widget_label(gz_paint_plain, "time budget");
 	gz_widgets_same_line(0.45F);
 	gz_widgets_next_width(0);
 	gz_widget_doubles("##budget", &window->settings.attention.budget_ms, 1, &range);

@@ -397,17 +397,31 @@ static bool is_available(const struct gz_window_sources *sources, int source)
 	return sources->named[source][0] != '\0';
 }
 
+static void choose_source(struct gz_window *window, int source)
+{
+	char text[GZ_PATH_SIZE];
+	if (!is_available(window->sources, source)) {
+		gz_info(window->log, "no such source of the gaze: G has the panel to name one");
+		return;
+	}
+	memcpy(text, window->sources->named[source], sizeof text);
+	gz_window_ask_for_gaze(window, text);
+}
+
+static bool is_source(const struct gz_window *window, int source)
+{
+	return (int)gz_window_source_now(window) == source;
+}
+
 static void choose_next_source(struct gz_window *window, int number)
 {
 	(void)number;
 	const struct gz_window_sources *sources = window->sources;
-	char text[GZ_PATH_SIZE];
 	int next = (int)gz_window_source_now(window);
 	do {
 		next = (next + 1) % GZ_WINDOW_SOURCE_COUNT;
 	} while (!is_available(sources, next));
-	memcpy(text, sources->named[next], sizeof text);
-	gz_window_ask_for_gaze(window, text);
+	choose_source(window, next);
 }
 
 static void toggle_freeze(struct gz_window *window, int number)
@@ -417,14 +431,42 @@ static void toggle_freeze(struct gz_window *window, int number)
 	window->present_needed = true;
 }
 
+static bool is_gaze_frozen(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->gaze_frozen;
+}
+
+#define SOURCE(which, text, what)                                                        \
+	{                                                                                \
+		.number = (which), .help = (what), .name = (text), .menu = GZ_MENU_GAZE, \
+		.submenu = "Gaze from", .on_picture = true, .is_on = is_source,          \
+		.run = choose_source                                                     \
+	}
+
 static const struct gz_window_action gaze_actions[] = {
+	SOURCE(GZ_WINDOW_DAEMON, "Daemon (tracker)", "gaze from the tracker of gazed"),
+	SOURCE(GZ_WINDOW_MOUSE, "Mouse", "gaze from the mouse"),
+	SOURCE(GZ_WINDOW_POINTER, "Mouse through gazed", "gaze from the mouse, through gazed"),
+	SOURCE(GZ_WINDOW_ENDPOINT, "Another machine", "gaze from a daemon elsewhere"),
+	SOURCE(GZ_WINDOW_LOG, "Recording", "gaze from a gaze log"),
+	SOURCE(GZ_WINDOW_FIXED, "Fixed point", "gaze at a fixed point"),
 	{ .letter = 'm',
 	  .keys = "M",
 	  .help = "next source of the gaze: daemon, mouse, log, …",
+	  .name = "Next source",
+	  .menu = GZ_MENU_GAZE,
+	  .words = "tracker",
 	  .run = choose_next_source },
 	{ .letter = ' ',
 	  .keys = "Space",
 	  .help = "freeze the sharp region; the gaze goes on",
+	  .name = "Freeze the sharp region",
+	  .menu = GZ_MENU_GAZE,
+	  .section = 1,
+	  .on_picture = true,
+	  .words = "hold stop pause",
+	  .is_on = is_gaze_frozen,
 	  .run = toggle_freeze },
 };
 

@@ -108,7 +108,7 @@ static bool draw_source_rows(struct gaze_panel *panel)
 
 static void draw_gaze_label(const char *text)
 {
-	gz_widget_label(text);
+	gz_widget_label(gz_paint_plain, text);
 	gz_widgets_same_line(LABEL_SHARE);
 	gz_widgets_next_width(0);
 }
@@ -378,11 +378,22 @@ static void toggle_gaze_panel(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
+static bool is_gaze_panel_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->gaze_panel->panel.open;
+}
+
 static const struct gz_window_action gaze_panel_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE, .applies = gz_window_gaze_panel_open, .run = toggle_gaze_panel },
 	{ .letter = 'g',
 	  .keys = "G",
 	  .help = "gaze: source, log, display, latency",
+	  .name = "Source, display, latency",
+	  .menu = GZ_MENU_GAZE,
+	  .section = 2,
+	  .words = "tracker eye panel",
+	  .is_on = is_gaze_panel_on,
 	  .run = toggle_gaze_panel },
 };
 

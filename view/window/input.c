@@ -1,5 +1,6 @@
 /* Keys run the actions of parts; the mouse is a gaze, and moves what the part that has it moves. */
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 
 #include <GLFW/glfw3.h>
@@ -101,6 +102,9 @@ static bool run_character(struct gz_window *window, unsigned codepoint)
 
 /* ---- mouse ---- */
 
+/* A button that moved the mouse no farther was a click, unscaled (chosen: a hand that trembles). */
+#define CLICK_NEAR 4.0
+
 static struct gz_window *window_of(GLFWwindow *glfw)
 {
 	return glfwGetWindowUserPointer(glfw);
@@ -132,10 +136,15 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 		run_character(window, codepoint);
 }
 
+/* A right click without a drag opens the picture's menu. */
 static void release_mouse(struct gz_window *window, int button)
 {
-	if (window->grab_button == button)
-		window->grabber = NULL;
+	if (window->grab_button != button)
+		return;
+	if (window->grabber && button == GLFW_MOUSE_BUTTON_RIGHT &&
+	    window->grab_moved <= CLICK_NEAR * (double)gz_widgets_scale())
+		gz_window_ask_for_menu(window);
+	window->grabber = NULL;
 }
 
 /* Dear ImGui itself knows where the mouse was in the last frame only. */
@@ -159,6 +168,7 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 		    (*part)->grab(window, button, modifiers_of(mods)))
 			window->grabber = *part;
 	window->grab_button = button;
+	window->grab_moved = 0;
 }
 
 /* The mouse's gaze is a share of the window, which also changes with the window's size. */
@@ -180,6 +190,7 @@ static void on_cursor(GLFWwindow *glfw, double x, double y)
 	const double right = x - window->cursor[0], down = y - window->cursor[1];
 	window->cursor[0] = x;
 	window->cursor[1] = y;
+	window->grab_moved += fabs(right) + fabs(down);
 	if (window->grabber && window->maker)
 		window->grabber->drag(window, right, down);
 	window->cursor_known = true;
@@ -190,8 +201,8 @@ static void on_cursor(GLFWwindow *glfw, double x, double y)
 
 void gz_window_follow_cursor(struct gz_window *window)
 {
-	/* While a setting is changed, its effect is shown at the previous gaze. */
-	if (window->cursor_held && !gz_widgets_have_mouse())
+	/* While the mouse is over a panel or a menu, its gaze rests where it left the picture. */
+	if (window->cursor_held && (window->grabber || !panels_have_mouse(window)))
 		move_mouse_gaze(window);
 }
 
@@ -218,7 +229,7 @@ static void on_size(GLFWwindow *glfw, int width, int height)
 	(void)height;
 	struct gz_window *window = window_of(glfw);
 	window->cast_needed = true;
-	if (window->cursor_known)
+	if (window->cursor_known && !panels_have_mouse(window))
 		move_mouse_gaze(window);
 }
 

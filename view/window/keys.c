@@ -1,20 +1,31 @@
 /* The part that lists the keys of all parts, searches them, and runs them. */
+#include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <GLFW/glfw3.h>
 
 #include "view/panels/keys_panel.h"
 #include "view/panels/widgets.h"
+#include "view/settings/setting_label.h"
 #include "view/window/window_state.h"
 
-/* Most rows (chosen: more than twice as many as there are). */
-enum { ROWS_MAX = 256 };
+#define GZ_LOG_MODULE "window"
+
+/* Most rows and settings (chosen: more than twice as many as there are). */
+enum { ROWS_MAX = 512, SETTINGS_MAX = 384, SETTING_TEXT_SIZE = 256 };
 
 struct gz_window_keys {
 	struct gz_keys_panel panel;
 	struct gz_keys_row rows[ROWS_MAX];
+	/* What a row runs: an action, or else it shows a setting. */
 	const struct gz_window_action *actions[ROWS_MAX];
+	const char *settings[ROWS_MAX];
 	size_t count;
+	/* Texts of the settings' rows. */
+	char sections[SETTINGS_MAX][GZ_SETTING_LABEL_SIZE];
+	char texts[SETTINGS_MAX][SETTING_TEXT_SIZE];
+	size_t setting_count;
 };
 
 /* Groups in the order of the list (chosen: what is needed most comes first). */
@@ -44,14 +55,42 @@ static void list_part_keys(struct gz_window_keys *state, const struct gz_window_
 	for (size_t i = 0; i < part->action_count && state->count < ROWS_MAX; i++) {
 		const struct gz_window_action *action = &part->actions[i];
 		const char *group = group_of(part, action);
-		if (!action->keys || rank_of(group) != rank)
+		if (!action->help || rank_of(group) != rank)
 			continue;
 		state->actions[state->count] = action;
 		state->rows[state->count++] = (struct gz_keys_row) {
 			.group = group,
 			.keys = action->keys,
 			.help = action->help,
+			.words = action->words,
 		};
+	}
+}
+
+static void list_setting(struct gz_window_keys *state, const struct gz_option *option)
+{
+	char label[GZ_SETTING_LABEL_SIZE];
+	if (state->setting_count == SETTINGS_MAX || state->count == ROWS_MAX)
+		return;
+	const size_t at = state->setting_count++;
+	gz_setting_section(option, state->sections[at]);
+	gz_setting_label(option, label);
+	snprintf(state->texts[at], sizeof state->texts[at], "%s: %s", label, option->help);
+	state->settings[state->count] = option->key;
+	state->rows[state->count++] = (struct gz_keys_row) {
+		.group = state->sections[at],
+		.help = state->texts[at],
+		.words = option->key,
+	};
+}
+
+/* Only the search shows them. */
+static void list_settings(struct gz_window *window)
+{
+	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
+		const struct gz_option_binding *table = &window->tables.bindings[i];
+		for (size_t k = 0; k < table->count; k++)
+			list_setting(window->keys, &table->options[k]);
 	}
 }
 
@@ -60,6 +99,7 @@ static enum gz_result list_keys(struct gz_window *window)
 	for (size_t rank = 0; rank <= GROUPS; rank++)
 		GZ_FOR_EACH_PART (part)
 			list_part_keys(window->keys, *part, rank);
+	list_settings(window);
 	return GZ_OK;
 }
 
@@ -69,6 +109,7 @@ static void show_keys(struct gz_window *window, bool open, bool search)
 	panel->open = open;
 	panel->search = search;
 	panel->filter[0] = '\0';
+	panel->selected = 0;
 	if (!open)
 		gz_widgets_release_keyboard();
 	gz_window_wake_panels(window);
@@ -85,18 +126,69 @@ static void draw_keys(struct gz_window *window, const struct gz_window_gaze *gaz
 		show_keys(window, false, false);
 	if (chosen >= state->count)
 		return;
-	const struct gz_window_action *action = state->actions[chosen];
 	state->panel.open = false;
 	gz_widgets_release_keyboard();
 	gz_window_wake_panels(window);
+	if (state->actions[chosen])
+		gz_window_run_action(window, state->actions[chosen]);
+	else
+		gz_window_show_setting(window, state->settings[chosen]);
+}
+
+void gz_window_run_action(struct gz_window *window, const struct gz_window_action *action)
+{
 	if (!action->applies || action->applies(window))
 		action->run(window, action->number);
+	else
+		gz_info(window->log, "%s: not possible at present",
+			action->name ? action->name : action->help);
+	gz_window_wake_panels(window);
+}
+
+void gz_window_toggle_keys(struct gz_window *window)
+{
+	show_keys(window, !window->keys->panel.open, false);
+}
+
+enum { KEY_NAME_SIZE = 16 };
+
+/* Names of keys that are no letters. */
+static const struct {
+	int key;
+	const char *name;
+} key_names[] = {
+	{ GLFW_KEY_ESCAPE, "Esc" }, { GLFW_KEY_LEFT, "Left" }, { GLFW_KEY_RIGHT, "Right" },
+	{ GLFW_KEY_UP, "Up" },      { GLFW_KEY_DOWN, "Down" },
+};
+
+static void print_key_name(const struct gz_window_action *action, char name[KEY_NAME_SIZE])
+{
+	name[0] = '\0';
+	if (action->letter == ' ')
+		snprintf(name, KEY_NAME_SIZE, "Space");
+	else if (action->letter)
+		snprintf(name, KEY_NAME_SIZE, "%c", toupper((unsigned char)action->letter));
+	else if (action->key >= GLFW_KEY_F1 && action->key <= GLFW_KEY_F25)
+		snprintf(name, KEY_NAME_SIZE, "F%d", action->key - GLFW_KEY_F1 + 1);
+	else if (action->key >= GLFW_KEY_0 && action->key <= GLFW_KEY_9)
+		snprintf(name, KEY_NAME_SIZE, "%d", action->key - GLFW_KEY_0);
+	for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++)
+		if (action->key == key_names[i].key)
+			snprintf(name, KEY_NAME_SIZE, "%s", key_names[i].name);
+}
+
+void gz_window_print_key(const struct gz_window_action *action, char *text, size_t size)
+{
+	char name[KEY_NAME_SIZE];
+	print_key_name(action, name);
+	snprintf(text, size, "%s%s%s", name[0] && action->modifiers & GZ_KEY_CONTROL ? "Ctrl+" : "",
+		 name[0] && action->modifiers & GZ_KEY_SHIFT ? "Shift+" : "", name);
 }
 
 static void toggle_keys(struct gz_window *window, int number)
 {
 	(void)number;
-	show_keys(window, !window->keys->panel.open, false);
+	gz_window_toggle_keys(window);
 }
 
 static void find_key(struct gz_window *window, int number)
@@ -117,12 +209,23 @@ static bool are_keys_open(const struct gz_window *window)
 }
 
 static const struct gz_window_action keys_actions[] = {
-	{ .letter = 'h', .keys = "H or ?", .help = "show or hide this list", .run = toggle_keys },
+	{ .letter = 'h',
+	  .keys = "H or ?",
+	  .help = "show or hide this list",
+	  .name = "Keys",
+	  .menu = GZ_MENU_HELP,
+	  .on_picture = true,
+	  .words = "help shortcuts keyboard manual",
+	  .run = toggle_keys },
 	{ .letter = '?', .run = toggle_keys },
 	{ .letter = 'p',
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+P",
-	  .help = "find a key by a word; Enter runs it",
+	  .help = "find anything by a word; Enter runs it",
+	  .name = "Find...",
+	  .menu = GZ_MENU_EDIT,
+	  .section = 2,
+	  .words = "search palette command help",
 	  .run = find_key },
 	/* The panel takes it itself, even while a text is typed there. */
 	{ .key = GLFW_KEY_ESCAPE, .applies = are_keys_open, .run = leave_key_to_panel },

@@ -177,8 +177,22 @@ static void toggle_vsync(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
+static bool is_vsync_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings.view.vsync;
+}
+
 static const struct gz_window_action latency_actions[] = {
-	{ .letter = 's', .keys = "S", .help = "V-sync on or off", .run = toggle_vsync },
+	{ .letter = 's',
+	  .keys = "S",
+	  .help = "V-sync on or off",
+	  .name = "V-sync",
+	  .menu = GZ_MENU_VIEW,
+	  .section = 3,
+	  .words = "refresh tearing",
+	  .is_on = is_vsync_on,
+	  .run = toggle_vsync },
 };
 
 static void drop_all_fences(struct gz_window *window)

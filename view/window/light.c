@@ -97,6 +97,10 @@ static const struct gz_window_action light_actions[] = {
 	{ .letter = 'w',
 	  .keys = "W",
 	  .help = "put the light back where the scene has it; Ctrl+drag moves it",
+	  .name = "Reset the light",
+	  .menu = GZ_MENU_EDIT,
+	  .section = 1,
+	  .words = "lamp",
 	  .applies = is_lit,
 	  .run = reset_light },
 };

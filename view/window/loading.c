@@ -608,22 +608,15 @@ static void cancel_by_key(struct gz_window *window, int number)
 	gz_window_cancel_loading(window);
 }
 
-/* What was refused, or is shown shifted, with its slices at even distances. */
-static void load_again_resampled(struct gz_window *window, int number)
+void gz_window_load_resampled(struct gz_window *window)
 {
 	struct gz_window_load_request *request = &window->loading->asked;
-	(void)number;
 	if (!request->path[0]) {
 		gz_warn(window->log, "nothing to resample: no file was opened");
 		return;
 	}
 	request->resample = true;
 	gz_window_load(window, request);
-}
-
-static bool may_open_files(const struct gz_window *window)
-{
-	return !window->alone; /* an experiment shows its own scenes */
 }
 
 enum gz_result gz_window_loading_outcome(const struct gz_window *window)
@@ -643,12 +636,6 @@ static const struct gz_window_action loading_actions[] = {
 	  .help = "cancel loading",
 	  .applies = gz_window_is_loading,
 	  .run = cancel_by_key },
-	{ .letter = 'o',
-	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
-	  .keys = "Ctrl+Shift+O",
-	  .help = "open it again, resample uneven slices",
-	  .applies = may_open_files,
-	  .run = load_again_resampled },
 };
 
 const struct gz_window_part gz_window_loading_part = {

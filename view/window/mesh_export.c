@@ -236,6 +236,10 @@ static const struct gz_window_action mesh_actions[] = {
 	  .modifiers = GZ_KEY_CONTROL,
 	  .keys = "Ctrl+E",
 	  .help = "write the surfaces as a mesh",
+	  .name = "Write mesh...",
+	  .menu = GZ_MENU_FILE,
+	  .section = 2,
+	  .words = "export ply obj stl",
 	  .group = "files",
 	  .run = show_mesh_panel },
 };

@@ -138,9 +138,22 @@ static bool is_list_open(const struct gz_window *window)
 	return window->notices_state->list;
 }
 
+static bool is_list_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->notices_state->list;
+}
+
 static const struct gz_window_action notices_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE, .applies = is_list_open, .run = toggle_notice_list },
-	{ .letter = 'n', .keys = "N", .help = "all messages so far", .run = toggle_notice_list },
+	{ .letter = 'n',
+	  .keys = "N",
+	  .help = "all messages so far",
+	  .name = "Messages",
+	  .menu = GZ_MENU_HELP,
+	  .words = "errors warnings log",
+	  .is_on = is_list_on,
+	  .run = toggle_notice_list },
 };
 
 const struct gz_window_part gz_window_notices_part = {

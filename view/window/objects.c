@@ -116,11 +116,22 @@ static bool are_objects_listed(const struct gz_window *window)
 	return window->objects->open;
 }
 
+static bool are_objects_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->objects->open;
+}
+
 static const struct gz_window_action objects_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE, .applies = are_objects_listed, .run = toggle_objects },
 	{ .letter = 'a',
 	  .keys = "A",
 	  .help = "list of all objects and labels",
+	  .name = "Objects",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 2,
+	  .words = "labels list panel",
+	  .is_on = are_objects_on,
 	  .run = toggle_objects },
 };
 

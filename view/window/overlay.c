@@ -13,11 +13,47 @@ static void choose_next_tint(struct gz_window *window, int number)
 	window->present_needed = true;
 }
 
+/* Show it, or hide it if it is shown. */
+static void switch_tint(struct gz_window *window, int kind)
+{
+	int *overlay = &window->settings.view.overlay;
+	*overlay = *overlay == kind ? GZ_OVERLAY_NONE : kind;
+	window->present_needed = true;
+}
+
+static bool is_tint_on(const struct gz_window *window, int kind)
+{
+	return window->settings.view.overlay == kind;
+}
+
 static const struct gz_window_action overlay_actions[] = {
 	{ .letter = 'i',
 	  .keys = "I",
 	  .help = "tint: ray spacing, step length, off",
+	  .name = "Next tint",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Tint",
+	  .words = "heat map overlay plan",
 	  .run = choose_next_tint },
+	{ .number = GZ_OVERLAY_SPACING,
+	  .help = "tint by the distance between rays",
+	  .name = "Ray spacing",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Tint",
+	  .on_picture = true,
+	  .is_on = is_tint_on,
+	  .run = switch_tint },
+	{ .number = GZ_OVERLAY_STEP,
+	  .help = "tint by the length of steps along rays",
+	  .name = "Step length",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Tint",
+	  .on_picture = true,
+	  .is_on = is_tint_on,
+	  .run = switch_tint },
 };
 
 static enum gz_result open_tint(struct gz_window *window)

@@ -20,7 +20,21 @@ struct gz_window_gaze;
 /** Modifiers of a key. */
 enum { GZ_KEY_SHIFT = 1, GZ_KEY_CONTROL = 2 };
 
-/** What a key does. */
+/** Menus, in their order in the bar; window/menu.c has their names. */
+enum gz_window_menu {
+	GZ_MENU_NONE,
+	GZ_MENU_FILE,
+	GZ_MENU_EDIT,
+	GZ_MENU_VIEW,
+	GZ_MENU_GAZE,
+	GZ_MENU_PICTURE,
+	GZ_MENU_STUDY,
+	GZ_MENU_HELP,
+	GZ_MENU_COUNT,
+};
+
+/** What can be done, by a key, in a menu and by its words: the list of keys, the menus and the
+ *  search are made from these rows. */
 struct gz_window_action {
 	/** A character of the user's keyboard layout, in lower case: 'c', '+', ' '; 0: @p key is
 	 *  used. */
@@ -29,10 +43,17 @@ struct gz_window_action {
 	int modifiers;     /**< exactly these of GZ_KEY_SHIFT, GZ_KEY_CONTROL */
 	bool repeats;      /**< runs again while the key is held */
 	int number;        /**< handed to run, which several rows may share */
-	const char *keys;  /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed, as another
-			      row tells of it */
+	const char *keys;  /**< as shown in the list of keys: "Ctrl+O"; NULL: not listed there */
 	const char *help;  /**< what it does; about 48 letters fit */
 	const char *group; /**< group in the list of keys; NULL: that of the part */
+	const char *name;  /**< in menus: "Open..."; NULL: it is in no menu */
+	enum gz_window_menu menu; /**< the menu it is in */
+	int section;              /**< of the menu, 0 to 3; a line parts sections */
+	const char *submenu; /**< it lies in a submenu of this name; NULL: in the menu itself */
+	bool on_picture;     /**< it is also in the menu of a right click on the picture */
+	const char *words;   /**< other words that find it, separated by blanks; or NULL */
+	/** Whether what it switches is on, for a mark in menus. NULL: it is no switch. */
+	bool (*is_on)(const struct gz_window *window, int number);
 	/** Whether the key is this action's at present; if not, the next action with the key is
 	 *  asked. NULL: always. */
 	bool (*applies)(const struct gz_window *window);
@@ -115,6 +136,7 @@ struct gz_window_part {
 /** All parts, in the order in which they are asked: ROW(name) for gz_window_NAME_part. A new part is
  *  a file and a row here. */
 #define GZ_WINDOW_PARTS(ROW) \
+	ROW(menu)          /* menus; first, as all others lie below its bar */ \
 	ROW(loading)       /* loads and holds scenes */ \
 	ROW(keys)          /* lists keys */ \
 	ROW(displays)      /* monitors, and which is the tracker's */ \

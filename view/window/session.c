@@ -152,10 +152,20 @@ static void close_session(struct gz_window *window)
 	end_session(window);
 }
 
+static bool is_session_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->session->writer != NULL;
+}
+
 static const struct gz_window_action session_actions[] = {
 	{ .key = GLFW_KEY_F9,
 	  .keys = "F9",
 	  .help = "start or stop a session, for --replay",
+	  .name = "Record a session",
+	  .menu = GZ_MENU_STUDY,
+	  .words = "log replay",
+	  .is_on = is_session_on,
 	  .run = toggle_session },
 };
 

@@ -70,7 +70,7 @@ static bool update_line(struct gz_window *window)
 	char budget[48], line[TEXT_SIZE];
 	const struct gz_frame_record *record = &window->record;
 	print_budget(record, budget, sizeof budget);
-	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms%s  %llu rays  |  H: keys", record->method,
+	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms%s  %llu rays", record->method,
 		 record->width, record->height, record->total_ms, budget,
 		 (unsigned long long)record->rays);
 	const bool changed = strcmp(line, window->status->line) != 0;
@@ -267,7 +267,8 @@ static void draw_captions(struct gz_window *window, const struct gz_window_gaze 
 	const struct gz_window_status *corner = window->status;
 	(void)gaze;
 	if (corner->line[0] && window->record.method)
-		window->panels_top = gz_marks_draw_caption(0, gz_paint_plain, corner->line);
+		window->panels_top =
+			gz_marks_draw_caption(window->panels_top, gz_paint_plain, corner->line);
 	if (corner->text[0] && window->maker)
 		window->panels_bottom =
 			gz_marks_draw_low_caption(*paints[corner->state.level], corner->text);

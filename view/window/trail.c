@@ -85,10 +85,21 @@ static void draw_trail(struct gz_window *window, const struct gz_window_gaze *ga
 	}
 }
 
+static bool is_trail_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->settings.view.trail;
+}
+
 static const struct gz_window_action trail_actions[] = {
 	{ .letter = 't',
 	  .keys = "T",
 	  .help = "trail: the last second of the gaze",
+	  .name = "Trail of the gaze",
+	  .menu = GZ_MENU_GAZE,
+	  .section = 1,
+	  .words = "path history",
+	  .is_on = is_trail_on,
 	  .run = toggle_trail },
 };
 

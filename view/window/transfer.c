@@ -120,11 +120,23 @@ static bool is_transfer_panel_open(const struct gz_window *window)
 	return window->transfer->panel.open;
 }
 
+static bool is_transfer_on(const struct gz_window *window, int number)
+{
+	(void)number;
+	return window->transfer->panel.open;
+}
+
 static const struct gz_window_action transfer_actions[] = {
 	{ .key = GLFW_KEY_ESCAPE, .applies = is_transfer_panel_open, .run = toggle_transfer_panel },
 	{ .letter = 'e',
 	  .keys = "E",
 	  .help = "edit the transfer function",
+	  .name = "Transfer function",
+	  .menu = GZ_MENU_EDIT,
+	  .section = 1,
+	  .on_picture = true,
+	  .words = "colour color opacity histogram preset shading tf curve",
+	  .is_on = is_transfer_on,
 	  .run = toggle_transfer_panel },
 	{ .letter = 'z',
 	  .modifiers = GZ_KEY_CONTROL,

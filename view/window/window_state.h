@@ -58,6 +58,7 @@ struct gz_window {
 	struct gz_window_keys *keys;
 	struct gz_window_latency *latency;
 	struct gz_window_loading *loading;
+	struct gz_window_menu_bar *menu;
 	struct gz_window_mesh_export *mesh_export;
 	struct gz_window_notices *notices_state;
 	struct gz_window_objects *objects;
@@ -92,17 +93,20 @@ struct gz_window {
 	/** The part that has the window to itself: no other part draws over the picture or has
 	 * keys, and the mouse does not move the camera. NULL: none. */
 	const struct gz_window_part *alone;
-	bool picture_hidden; /**< nothing is cast, as something else fills the window */
-	bool settings_open;  /**< the settings panel is open */
-	int panel_frames;    /**< frames still to be drawn so that panels answer input */
-	float panels_top;    /**< lower edge of the captions at the top, in this frame */
-	float panels_bottom; /**< height of the caption at the bottom left, in this frame */
+	bool picture_hidden;        /**< nothing is cast, as something else fills the window */
+	bool settings_open;         /**< the settings panel is open */
+	const char *setting_marked; /**< key of the setting that was searched for; NULL: none */
+	bool setting_reveal;        /**< it is scrolled to in the next frame */
+	int panel_frames;           /**< frames still to be drawn so that panels answer input */
+	float panels_top;           /**< lower edge of the captions at the top, in this frame */
+	float panels_bottom;        /**< height of the caption at the bottom left, in this frame */
 
 	int64_t key_ns; /**< when the last key was pressed */
 	bool key_taken; /**< that key did something: its character is ignored */
 	const struct gz_window_part *grabber; /**< has the mouse; NULL: none */
 	int grab_button;
-	int camera_drag; /**< of part camera: what dragging does */
+	double grab_moved; /**< way of the mouse since then, screen coordinates */
+	int camera_drag;   /**< of part camera: what dragging does */
 	bool cursor_known;
 	bool cursor_inside;    /**< the mouse is over the window's content */
 	bool cursor_held;      /**< the mouse has moved, and its gaze has not followed yet */
@@ -199,6 +203,9 @@ bool gz_window_let_data_go(struct gz_window *window);
  * effect. */
 struct gz_settings_panel gz_window_settings_rows(const struct gz_window *window);
 
+/** Open the settings panel at a setting, which is marked. @param key  static text */
+void gz_window_show_setting(struct gz_window *window, const char *key);
+
 /* ---- measure.c ---- */
 
 /**
@@ -218,6 +225,22 @@ enum gz_result gz_window_measure(struct gz_window *window);
 /** Ask for the layout of the raw file that the program was started with, if neither the options nor
  *  its name and size tell it for certain. @return whether it is asked for */
 bool gz_window_ask_layout(struct gz_window *window);
+
+/* ---- keys.c ---- */
+
+/** Show or hide the list of keys. */
+void gz_window_toggle_keys(struct gz_window *window);
+
+/** Run an action, if it applies. */
+void gz_window_run_action(struct gz_window *window, const struct gz_window_action *action);
+
+/** Print the key of an action, such as "Ctrl+Shift+S"; nothing if it has none. */
+void gz_window_print_key(const struct gz_window_action *action, char *text, size_t size);
+
+/* ---- menu.c ---- */
+
+/** Open the menu of the picture at the mouse. */
+void gz_window_ask_for_menu(struct gz_window *window);
 
 /* ---- gaze_panel.c ---- */
 

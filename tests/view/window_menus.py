@@ -1,0 +1,102 @@
+"""Menus, the search and the settings of gazeview's window, as a person with a mouse uses them.
+
+window_menus.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+"""
+
+import os
+import sys
+import unittest
+
+from picture import PATIENCE_S
+from window_case import SCENE, SIZE, WindowCase
+
+BAR = (36, 36, 36)  # the menu bar's ground
+
+
+class Menus(WindowCase):
+    menu = "yes"
+
+    def start_own_scene(self, *more):
+        """Start with a copy of the small scene, which may be saved."""
+        self.own = os.path.join(os.path.dirname(SCENE), "own-%s.scene" % self.id()[-20:])
+        with open(SCENE, encoding="utf-8") as scene, open(self.own, "w", encoding="utf-8") as own:
+            own.write(scene.read())
+        self.addCleanup(lambda: os.path.exists(self.own) and os.unlink(self.own))
+        return self.start("--gaze", "mouse", "--method", "acuity", *more, scene=self.own)
+
+    def saved(self):
+        """The lines of the scene, after the window has saved it."""
+        before = os.stat(self.own).st_mtime_ns
+        self.press("ctrl+s")
+        self.wait_for(lambda: os.stat(self.own).st_mtime_ns != before, "a saved scene")
+        with open(self.own, encoding="utf-8") as own:
+            return own.read().splitlines()
+
+    def click(self, x, y, button=1):
+        """A click that lasts until a frame has seen it."""
+        self.move(x, y)
+        self.until_idle()
+        self.tool("mousedown", button)
+        self.until_idle()
+        self.tool("mouseup", button)
+        self.until_idle()
+
+    def find(self, words):
+        """Search for words, by the keyboard."""
+        self.press("ctrl+p")
+        self.tool("type", "--delay", "30", words)
+        self.until_idle()
+
+    def amber_letters(self, picture):
+        pixels = (picture.at(x, y) for x in range(100, SIZE[0] - 10) for y in range(20, 250))
+        return sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
+
+    def bar_is_shown(self, picture):
+        return picture.at(SIZE[0] // 2, 2) == BAR
+
+    def test_menus_and_search_do_what_they_say(self):
+        first = self.start_own_scene()
+        self.assertTrue(self.bar_is_shown(first))
+        self.move(240, 160)
+        self.until_idle()
+        # Gaze, Cross at the gaze. While the mouse is in the bar, its gaze stays.
+        self.click(149, 9)
+        self.click(180, 106)
+        self.until(lambda p: self.near(self.red_middle(p), (180, 106)), "a cross")
+        self.move(260, 9)
+        self.assertTrue(self.near(self.red_middle(self.rest()), (180, 106)))
+        # A right click on the picture, and its last row: the list of keys.
+        self.click(60, 60, button=3)
+        shown = self.rest()
+        self.assertEqual(self.viewer.poll(), None)
+        self.assertNotEqual(shown.part(62, 62, 200, 300), first.part(62, 62, 200, 300))
+        self.click(420, 200)
+        # The search finds nothing, a setting, an action by another word.
+        self.find("zzzz")
+        self.until(lambda p: self.amber_letters(p) > 60, "nothing found")
+        self.press("Escape")
+        self.find("background")
+        before = self.rest()
+        self.press("Return")
+        self.until(lambda p: p.part(100, 60, 470, 300) != before.part(100, 60, 470, 300) and
+                   self.amber_letters(p) > 60, "the setting, marked")
+        self.press("p")
+        self.find("split")
+        self.press("Return")
+        self.assertIn("compare = split", self.saved())
+        self.assertIn("gaze_cursor = true", self.saved())
+        # One key hides the bar.
+        self.press("u")
+        self.until(lambda p: not self.bar_is_shown(p), "no bar")
+        self.find("exit")
+        self.press_last("Return")
+
+    def press_last(self, key):
+        """Press the key that ends the program."""
+        self.tool("key", key)
+        self.assertEqual(self.viewer.wait(timeout=PATIENCE_S), 0)
+        self.viewer = None
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
