@@ -95,7 +95,7 @@ class WindowCase(unittest.TestCase):
             stderr=subprocess.PIPE, text=True,
         )
         found = run("timeout", PATIENCE_S, "xdotool", "search", "--sync", "--onlyvisible", "--name",
-                    "^gazeview$", env=self.environment)
+                    "gazeview$", env=self.environment)
         self.assertEqual(found.returncode, 0, "no window appears")
         self.window = found.stdout.split()[0]
 
@@ -222,7 +222,7 @@ class WindowCase(unittest.TestCase):
         """Wait for a window of the viewer, other than @than."""
         def others():
             # A search also fails if a window is closed meanwhile.
-            found = run("xdotool", "search", "--onlyvisible", "--name", "^gazeview$",
+            found = run("xdotool", "search", "--onlyvisible", "--name", "gazeview$",
                         env=self.environment)
             return found.returncode == 0 and [n for n in found.stdout.split() if n != than]
 

@@ -85,11 +85,26 @@ class Menus(WindowCase):
         self.press("Return")
         self.assertIn("compare = split", self.saved())
         self.assertIn("gaze_cursor = true", self.saved())
+        self.assertEqual(self.title(), os.path.basename(self.own) + " - gazeview")
+        # A change marks the title, and quitting asks; undo takes both back.
+        self.press("1")
+        self.assertEqual(self.title()[0], "*")
+        self.press("q")
+        asked = self.rest()
+        self.assertEqual(self.viewer.poll(), None)
+        self.press("Escape")
+        self.assertNotEqual(self.rest().part(140, 100, 340, 200), asked.part(140, 100, 340, 200))
+        self.press("ctrl+z")
+        self.assertNotEqual(self.title()[0], "*")
         # One key hides the bar.
         self.press("u")
         self.until(lambda p: not self.bar_is_shown(p), "no bar")
         self.find("exit")
         self.press_last("Return")
+
+    def title(self):
+        self.until_idle()
+        return self.tool("getwindowname", self.window).strip()
 
     def press_last(self, key):
         """Press the key that ends the program."""

@@ -191,6 +191,7 @@ static bool draw_keys_filter(struct gz_keys_panel *panel)
 	gz_widgets_next_width(0);
 	if (panel->search)
 		gz_widgets_focus_next();
+	panel->activating = panel->search;
 	panel->search = false;
 	if (gz_widget_text_field("##find", panel->filter, sizeof panel->filter, false))
 		panel->selected = 0;

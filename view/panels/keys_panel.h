@@ -22,7 +22,8 @@ struct gz_keys_row {
 /** State of the list. */
 struct gz_keys_panel {
 	bool open;
-	bool search; /**< the field gets the keyboard in the next frame */
+	bool search;     /**< the field gets the keyboard in the next frame */
+	bool activating; /**< and has it in the one after that */
 	char filter[GZ_KEYS_FILTER_SIZE];
 	int selected; /**< of the rows found, the one that Enter runs */
 };

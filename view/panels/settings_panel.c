@@ -11,6 +11,9 @@
 /* Unscaled (chosen: three numbers fit beside their name). */
 #define WIDTH       380.0f
 #define LABEL_SHARE 0.45f
+/* The rest of the row: the widget, and the arrow that resets it. */
+#define VALUE_SHARE 0.47f
+#define RESET_SHARE 0.93f
 
 /* Ranges up to this are sliders, wider ones are dragged (chosen: a slider of 200 px reaches every
  * hundredth). */
@@ -108,6 +111,23 @@ static bool is_marked(const struct gz_settings_panel *panel, const struct gz_opt
 	return panel->marked && strcmp(panel->marked, option->key) == 0;
 }
 
+/* An arrow beside a value that is not the scene's. */
+static bool draw_setting_reset(const struct gz_settings_panel *panel,
+			       const struct gz_option_binding *binding,
+			       const struct gz_option *option)
+{
+	const size_t table = (size_t)(binding - panel->bindings);
+	char value[GZ_OPTION_TEXT_SIZE], tip[GZ_OPTION_TEXT_SIZE + 64];
+	if (!panel->given || gz_option_same(option, binding->target, panel->given[table].target) ||
+	    gz_option_format(option, panel->given[table].target, value, sizeof value) != GZ_OK)
+		return false;
+	gz_widgets_same_line(RESET_SHARE);
+	const bool reset = gz_widget_back_button("##reset");
+	snprintf(tip, sizeof tip, "back to %s, as the scene has it", value[0] ? value : "nothing");
+	gz_widget_tooltip(tip);
+	return reset && gz_option_parse(option, value, binding->target, NULL, 0) == GZ_OK;
+}
+
 static bool draw_setting(const struct gz_settings_panel *panel,
 			 const struct gz_option_binding *binding, const struct gz_option *option)
 {
@@ -121,9 +141,10 @@ static bool draw_setting(const struct gz_settings_panel *panel,
 	gz_widget_label(marked ? gz_paint_amber : gz_paint_plain, label);
 	gz_widget_tooltip(option->help);
 	gz_widgets_same_line(LABEL_SHARE);
-	gz_widgets_next_width(0);
-	const bool changed = draw_setting_widget(option, setting_field(binding, option));
+	gz_widgets_next_width(panel->given ? VALUE_SHARE : 0);
+	bool changed = draw_setting_widget(option, setting_field(binding, option));
 	gz_widget_tooltip(option->help);
+	changed |= draw_setting_reset(panel, binding, option);
 	gz_widgets_enable();
 	gz_widgets_pop_id();
 	return changed;

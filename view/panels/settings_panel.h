@@ -18,6 +18,8 @@ struct gz_settings_panel {
 	/** Whether the option with @p key has an effect at present; others are grey. NULL: all. */
 	bool (*applies)(const void *user, const char *key);
 	const void *user;
+	/** The same tables bound to the values that a reset returns to; NULL: there is no reset. */
+	const struct gz_option_binding *given;
 	float margin_top;   /**< kept free above it, screen coordinates */
 	bool open;          /**< false once its cross was clicked */
 	const char *marked; /**< key of a row that is marked; NULL: none */

@@ -247,6 +247,11 @@ bool gz_transfer_edit_can_undo(const struct gz_transfer_edit *edit)
 	return edit->past > 0;
 }
 
+int gz_transfer_edit_steps(const struct gz_transfer_edit *edit)
+{
+	return edit->past;
+}
+
 bool gz_transfer_edit_can_redo(const struct gz_transfer_edit *edit)
 {
 	return edit->future > 0;

@@ -114,6 +114,9 @@ bool gz_transfer_edit_redo(struct gz_transfer_edit *edit);
 /** Whether a step can be undone. */
 bool gz_transfer_edit_can_undo(const struct gz_transfer_edit *edit);
 
+/** How many steps can be undone. */
+int gz_transfer_edit_steps(const struct gz_transfer_edit *edit);
+
 /** Whether a step can be redone. */
 bool gz_transfer_edit_can_redo(const struct gz_transfer_edit *edit);
 

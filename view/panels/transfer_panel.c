@@ -309,10 +309,9 @@ static void draw_point_fields(struct gz_transfer_panel *panel)
 	shown_range(panel, range);
 	const double wide = range[1] - range[0];
 	double value = range[0] + point.value * wide, opacity = point.opacity;
-	const struct gz_number_range values = { .least = range[0],
-						.greatest = range[1],
-						.speed = wide / 500,
-						.format = "value %.6g" };
+	const struct gz_number_range values = {
+		.least = range[0], .greatest = range[1], .speed = wide / 500, .format = "value %.6g"
+	};
 	const struct gz_number_range opacities = { .greatest = 1,
 						   .speed = 0.002,
 						   .format = "opacity %.5g" };
@@ -456,7 +455,7 @@ static enum gz_transfer_wish draw_file_row(struct gz_transfer_panel *panel)
 	gz_widgets_enable();
 	gz_widgets_same_line(0);
 	gz_widget_label(gz_paint_plain, gz_transfer_edit_differs(panel->edit) ? "changed"
-					: panel->file[0]                      ? "as saved"
+					: panel->file[0]                      ? "as in the file"
 									      : "not saved");
 	return wish;
 }

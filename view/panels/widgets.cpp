@@ -649,6 +649,11 @@ bool gz_widget_button(const char *id)
 	return ImGui::Button(id) || entered_by_keys();
 }
 
+bool gz_widget_back_button(const char *id)
+{
+	return ImGui::ArrowButton(id, ImGuiDir_Left) || entered_by_keys();
+}
+
 bool gz_widget_checkbox(const char *id, bool *value)
 {
 	return ImGui::Checkbox(id, value);
@@ -886,8 +891,7 @@ bool gz_corner_button(const char *text)
 	ImGui::Begin("##corner", nullptr,
 		     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
 			     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
-			     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing |
-			     ImGuiWindowFlags_NoNav);
+			     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing);
 	const bool pressed = ImGui::SmallButton(text);
 	ImGui::End();
 	ImGui::PopStyleVar(2);

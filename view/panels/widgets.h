@@ -241,6 +241,9 @@ bool gz_widget_heading(const char *id, bool open_at_first);
 /** A button. @return whether it was pressed */
 bool gz_widget_button(const char *id);
 
+/** A small button with an arrow to the left. @return whether it was pressed */
+bool gz_widget_back_button(const char *id);
+
 /** A box to tick. @return whether it was changed */
 bool gz_widget_checkbox(const char *id, bool *value);
 

@@ -1,5 +1,5 @@
 /* The part that has the foveation methods, the settings panel, the letters of a patient's sides,
- * the gaze cursor, full screen, and quitting. Its state is in struct gz_window. */
+ * the gaze cursor, and full screen. Its state is in struct gz_window. */
 #include <GLFW/glfw3.h>
 
 #include "render/plan/method.h"
@@ -7,6 +7,7 @@
 #include "view/panels/marks.h"
 #include "view/panels/settings_panel.h"
 #include "view/settings/scene_keys.h"
+#include "view/window/history.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -55,12 +56,6 @@ static void toggle_fullscreen(struct gz_window *window, int number)
 	(void)number;
 	gz_window_toggle_fullscreen(window);
 	window->present_needed = true;
-}
-
-static void quit_program(struct gz_window *window, int number)
-{
-	(void)number;
-	glfwSetWindowShouldClose(window->glfw, GLFW_TRUE);
 }
 
 static bool is_method(const struct gz_window *window, int method)
@@ -163,16 +158,6 @@ static const struct gz_window_action basics_actions[] = {
 	  .group = "window",
 	  .run = toggle_fullscreen },
 	{ .key = GLFW_KEY_F11, .run = toggle_fullscreen },
-	{ .letter = 'q',
-	  .keys = "Q or Esc",
-	  .help = "quit; Esc first closes open panels",
-	  .name = "Quit",
-	  .menu = GZ_MENU_FILE,
-	  .section = 3,
-	  .words = "exit close leave end",
-	  .group = "window",
-	  .run = quit_program },
-	{ .key = GLFW_KEY_ESCAPE, .run = quit_program },
 };
 
 static bool setting_has_effect(const void *user, const char *key)
@@ -195,6 +180,7 @@ struct gz_settings_panel gz_window_settings_rows(const struct gz_window *window)
 		.count = GZ_VIEW_SCENE_TABLES,
 		.applies = setting_has_effect,
 		.user = &window->settings,
+		.given = gz_window_given_settings(window),
 	};
 }
 

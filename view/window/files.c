@@ -11,8 +11,10 @@
 #include "view/files/scene_save.h"
 #include "view/panels/file_dialogs.h"
 #include "view/window/gaze.h"
+#include "view/window/history.h"
 #include "view/window/loading.h"
 #include "view/window/transfer.h"
+#include "view/window/unsaved.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -89,8 +91,7 @@ static void load_file(struct gz_window *window, const char *path, const struct g
 	free(request);
 }
 
-/* As if the file had been dropped on the window. */
-static void open_file(struct gz_window *window, const char *path)
+void gz_window_open_file(struct gz_window *window, const char *path)
 {
 	if (strlen(path) >= GZ_PATH_SIZE) {
 		gz_err(window->log, "%.60s...: the path is longer than %d bytes; move the file",
@@ -115,6 +116,19 @@ static void open_file(struct gz_window *window, const char *path)
 		break;
 	}
 	gz_window_wake_panels(window);
+}
+
+/* Whether a file takes the place of the scene. */
+static bool replaces_scene(const char *path)
+{
+	const enum gz_file_kind kind = gz_file_kind_of(path);
+	return kind != GZ_FILE_TRANSFER && kind != GZ_FILE_GAZE_LOG;
+}
+
+static void open_or_ask(struct gz_window *window, const char *path)
+{
+	if (!replaces_scene(path) || !gz_window_ask_before_opening(window, path))
+		gz_window_open_file(window, path);
 }
 
 bool gz_window_ask_layout(struct gz_window *window)
@@ -172,7 +186,7 @@ static void on_drop(GLFWwindow *glfw, int count, const char *paths[])
 	if (count > 1)
 		gz_info(window->log, "%d files were dropped: opening %s%s", count, paths[0],
 			gz_dicom_is(paths[0]) ? " with its series" : " only");
-	open_file(window, paths[0]);
+	open_or_ask(window, paths[0]);
 }
 
 static enum gz_result attach_drop_callback(struct gz_window *window)
@@ -206,6 +220,7 @@ static enum gz_result save_scene_to(struct gz_window *window, const char *path)
 		snprintf(state->made_for, sizeof state->made_for, "%s", path);
 	gz_window_rename_scene(window, path);
 	gz_window_transfer_saved(window);
+	gz_window_scene_saved(window);
 	gz_recent_add(&state->recent, path);
 	if (state->recent_file[0])
 		gz_recent_write(&state->recent, state->recent_file, window->log);
@@ -261,6 +276,16 @@ static void save_scene(struct gz_window *window, int number)
 		gz_save_panel_ask(panel, question);
 }
 
+void gz_window_save_scene(struct gz_window *window)
+{
+	save_scene(window, 0);
+}
+
+bool gz_window_is_saving(const struct gz_window *window)
+{
+	return window->files->save_panel.open;
+}
+
 static void draw_save_dialog(struct gz_window *window)
 {
 	struct gz_save_panel *panel = &window->files->save_panel;
@@ -290,7 +315,7 @@ static void draw_file_dialogs(struct gz_window *window, const struct gz_window_g
 	(void)gaze;
 	if (gz_open_panel_draw(&state->open_panel, path)) {
 		gz_open_panel_close(&state->open_panel);
-		open_file(window, path);
+		open_or_ask(window, path);
 	}
 	if (gz_raw_panel_draw(&state->raw_panel)) {
 		const struct gz_raw_layout layout = state->raw_panel.layout;

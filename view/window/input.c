@@ -77,7 +77,7 @@ static bool run_key(struct gz_window *window, int key, int scancode, int modifie
 	if (window->alone)
 		return window->alone->key && window->alone->key(window, key, scancode, repeated);
 	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
-	    (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) ||
+	    gz_window_is_search_starting(window) || (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) ||
 	    (gz_widgets_have_navigation() && is_navigation_key(key)))
 		return false;
 	const struct pressed_key pressed = {
@@ -132,7 +132,9 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 {
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
-	if (!window->key_taken)
+	if (gz_window_is_search_starting(window))
+		gz_window_type_into_search(window, codepoint);
+	else if (!window->key_taken)
 		run_character(window, codepoint);
 }
 

@@ -135,6 +135,23 @@ static void draw_keys(struct gz_window *window, const struct gz_window_gaze *gaz
 		gz_window_show_setting(window, state->settings[chosen]);
 }
 
+bool gz_window_is_search_starting(const struct gz_window *window)
+{
+	const struct gz_keys_panel *panel = &window->keys->panel;
+	return panel->open && (panel->search || panel->activating);
+}
+
+void gz_window_type_into_search(struct gz_window *window, unsigned codepoint)
+{
+	struct gz_keys_panel *panel = &window->keys->panel;
+	const size_t length = strlen(panel->filter);
+	if (panel->search && codepoint >= ' ' && codepoint < 0x7f &&
+	    length + 1 < sizeof panel->filter) {
+		panel->filter[length] = (char)codepoint;
+		panel->filter[length + 1] = '\0';
+	}
+}
+
 void gz_window_run_action(struct gz_window *window, const struct gz_window_action *action)
 {
 	if (!action->applies || action->applies(window))

@@ -50,8 +50,8 @@ struct gz_window_load_request {
 enum gz_result gz_window_load(struct gz_window *window,
 			      const struct gz_window_load_request *request);
 
-/** Load the latest file again, with slices that do not lie evenly resampled: what was refused, or is
- *  shown shifted. */
+/** Load the latest file again, with slices that do not lie evenly resampled: what was refused, or
+ * is shown shifted. */
 void gz_window_load_resampled(struct gz_window *window);
 
 /** Whether a gz_window_load() goes on, or waits for a series to be chosen. */

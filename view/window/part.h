@@ -139,6 +139,7 @@ struct gz_window_part {
 	ROW(menu)          /* menus; first, as all others lie below its bar */ \
 	ROW(loading)       /* loads and holds scenes */ \
 	ROW(keys)          /* lists keys */ \
+	ROW(history)       /* undoes and redoes; before all that change settings */ \
 	ROW(displays)      /* monitors, and which is the tracker's */ \
 	ROW(gaze)          /* sources of the gaze */ \
 	ROW(status)        /* the line on top, and the lower left corner */ \
@@ -163,6 +164,7 @@ struct gz_window_part {
 	ROW(session)       /* records sessions; behind all that change the gaze */ \
 	ROW(capture)       /* writes pictures and videos; behind all that paint */ \
 	ROW(basics)        /* methods, settings, cursor; behind all whose panels Escape closes */ \
+	ROW(unsaved)       /* asks before changes are lost, and quits; last to take Escape */ \
 	ROW(experiment)    /* runs an experiment, alone */
 /* clang-format on */
 

@@ -103,18 +103,6 @@ static void toggle_transfer_panel(struct gz_window *window, int number)
 	gz_window_wake_panels(window);
 }
 
-static void undo_transfer_step(struct gz_window *window, int again)
-{
-	struct gz_window_transfer *transfer = window->transfer;
-	if (!transfer->panel.open || !transfer->edit)
-		return;
-	if (again)
-		gz_transfer_edit_redo(transfer->edit);
-	else
-		gz_transfer_edit_undo(transfer->edit);
-	gz_window_wake_panels(window);
-}
-
 static bool is_transfer_panel_open(const struct gz_window *window)
 {
 	return window->transfer->panel.open;
@@ -138,17 +126,6 @@ static const struct gz_window_action transfer_actions[] = {
 	  .words = "colour color opacity histogram preset shading tf curve",
 	  .is_on = is_transfer_on,
 	  .run = toggle_transfer_panel },
-	{ .letter = 'z',
-	  .modifiers = GZ_KEY_CONTROL,
-	  .repeats = true,
-	  .keys = "Ctrl+Z",
-	  .help = "undo the last step there; with Shift redo",
-	  .run = undo_transfer_step },
-	{ .letter = 'z',
-	  .modifiers = GZ_KEY_CONTROL | GZ_KEY_SHIFT,
-	  .repeats = true,
-	  .number = 1,
-	  .run = undo_transfer_step },
 };
 
 /* Look up the file that the settings name. */
@@ -281,6 +258,22 @@ static void close_transfer(struct gz_window *window)
 {
 	stop_histogram(window->transfer);
 	gz_transfer_edit_destroy(&window->transfer->edit);
+}
+
+int gz_window_transfer_steps(const struct gz_window *window)
+{
+	return window->transfer->edit ? gz_transfer_edit_steps(window->transfer->edit) : 0;
+}
+
+bool gz_window_transfer_step(struct gz_window *window, bool again)
+{
+	struct gz_transfer_edit *edit = window->transfer->edit;
+	return edit && (again ? gz_transfer_edit_redo(edit) : gz_transfer_edit_undo(edit));
+}
+
+bool gz_window_transfer_changed(const struct gz_window *window)
+{
+	return window->transfer->edit && gz_transfer_edit_differs(window->transfer->edit);
 }
 
 void gz_window_transfer_saved(struct gz_window *window)

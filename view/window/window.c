@@ -136,7 +136,7 @@ static bool take_template(struct gz_window *window, const struct gz_scene_settin
 }
 
 /* Values that contradict each other are not taken. */
-static void take_changes(struct gz_window *window, const struct gz_scene_settings *before)
+void gz_window_take_changes(struct gz_window *window, const struct gz_scene_settings *before)
 {
 	if (!take_table(window, before) || !take_cube(window, before) ||
 	    !take_template(window, before) || !settings_valid(&window->settings))
@@ -200,7 +200,7 @@ void gz_window_present(struct gz_window *window, const struct gz_window_gaze *ga
 		if ((*part)->presented)
 			(*part)->presented(window);
 	if (!gz_scene_settings_same(&before, &window->settings))
-		take_changes(window, &before);
+		gz_window_take_changes(window, &before);
 }
 
 /* Whether what lies over the picture must be drawn again. */

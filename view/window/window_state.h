@@ -54,6 +54,7 @@ struct gz_window {
 	struct gz_window_files *files;
 	struct gz_window_frame_times *frame_times;
 	struct gz_window_gaze_panel *gaze_panel;
+	struct gz_window_history *history;
 	struct gz_window_isovalue *isovalue;
 	struct gz_window_keys *keys;
 	struct gz_window_latency *latency;
@@ -71,6 +72,7 @@ struct gz_window {
 	struct gz_window_time *time;
 	struct gz_window_trail *trail;
 	struct gz_window_transfer *transfer;
+	struct gz_window_unsaved *unsaved;
 	/** Of part experiment, which makes it itself; NULL: there is no experiment. */
 	struct gz_window_experiment *experiment;
 
@@ -147,6 +149,10 @@ struct gz_window_gaze {
  *  swap. */
 void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
 		       int height);
+
+/** Check settings that have changed since @p before, load what they name, and show them; if they
+ *  contradict each other, they become those of @p before again. */
+void gz_window_take_changes(struct gz_window *window, const struct gz_scene_settings *before);
 
 /* ---- context.c ---- */
 
@@ -226,10 +232,25 @@ enum gz_result gz_window_measure(struct gz_window *window);
  *  its name and size tell it for certain. @return whether it is asked for */
 bool gz_window_ask_layout(struct gz_window *window);
 
+/** Show a file as if it had been dropped on the window; nothing is asked. */
+void gz_window_open_file(struct gz_window *window, const char *path);
+
+/** Save the scene, or ask for its name. */
+void gz_window_save_scene(struct gz_window *window);
+
+/** Whether the name of the scene is being asked for. */
+bool gz_window_is_saving(const struct gz_window *window);
+
 /* ---- keys.c ---- */
 
 /** Show or hide the list of keys. */
 void gz_window_toggle_keys(struct gz_window *window);
+
+/** Whether the search is open and its field has no keyboard yet: keys are no actions. */
+bool gz_window_is_search_starting(const struct gz_window *window);
+
+/** Take a character that was typed before the search was drawn. */
+void gz_window_type_into_search(struct gz_window *window, unsigned codepoint);
 
 /** Run an action, if it applies. */
 void gz_window_run_action(struct gz_window *window, const struct gz_window_action *action);
