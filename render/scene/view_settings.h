@@ -58,8 +58,9 @@ struct gz_view_settings {
 					       from 1; empty: automatic */
 	int compare;                        /**< enum gz_view_compare */
 	double split; /**< where the standard picture begins, as a fraction of the width */
-	double difference_gain;                         /**< factor, 1 to GZ_DIFFERENCE_GAIN_MAX */
-	bool frame_times;                               /**< the plot of the frame times */
+	double difference_gain; /**< factor, 1 to GZ_DIFFERENCE_GAIN_MAX */
+	bool frame_times;       /**< the plot of the frame times */
+	bool refine;            /**< the window shows full quality while camera and gaze rest */
 	char saved[GZ_SAVED_VIEWS][GZ_SAVED_VIEW_SIZE]; /**< saved views; empty: none */
 };
 

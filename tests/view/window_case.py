@@ -34,7 +34,8 @@ for tool in ("Xvfb", "xdotool"):
 
 
 class WindowCase(unittest.TestCase):
-    menu = "no"  # most tests look at the picture, which the bar covers
+    menu = "no"  # most tests look at the picture, which the bar covers …
+    refine = "no"  # … and which is another one at rest
 
     @classmethod
     def setUpClass(cls):
@@ -91,13 +92,18 @@ class WindowCase(unittest.TestCase):
         """Start gazeview with exactly these arguments, and wait for its window."""
         self.tool("mousemove", *SCREEN)
         self.viewer = subprocess.Popen(
-            [GAZEVIEW, "--size", "%dx%d" % SIZE, "--menu=%s" % self.menu, *words], env=self.environment,
+            [GAZEVIEW, "--size", "%dx%d" % SIZE, "--menu=%s" % self.menu,
+             *self.scene_keys(words), *words], env=self.environment,
             stderr=subprocess.PIPE, text=True,
         )
         found = run("timeout", PATIENCE_S, "xdotool", "search", "--sync", "--onlyvisible", "--name",
                     "gazeview$", env=self.environment)
         self.assertEqual(found.returncode, 0, "no window appears")
         self.window = found.stdout.split()[0]
+
+    def scene_keys(self, words):
+        """An experiment has settings of its own."""
+        return () if "--experiment" in words else ("--view.refine=%s" % self.refine,)
 
     def start(self, *more, scene=SCENE):
         """Start gazeview with a scene, by default the small one. -> its first picture"""

@@ -150,7 +150,7 @@ static void publish_reference(struct gz_reference_worker *worker, enum gz_result
 		worker->picture = room;
 		worker->ready = true;
 	}
-	if (is_current)
+	if (is_current || !worker->wanted) /* else the next one has begun to count */
 		atomic_store(&worker->rows_done, -1);
 	pthread_mutex_unlock(&worker->lock);
 	if (result != GZ_OK && result != GZ_ERR_CANCELLED)
@@ -273,6 +273,14 @@ bool gz_reference_worker_ask(struct gz_reference_worker *worker,
 	}
 	pthread_mutex_unlock(&worker->lock);
 	return another;
+}
+
+void gz_reference_worker_cancel(struct gz_reference_worker *worker)
+{
+	pthread_mutex_lock(&worker->lock);
+	worker->wanted = worker->ready = worker->any_asked = false;
+	atomic_store(&worker->outdated, true);
+	pthread_mutex_unlock(&worker->lock);
 }
 
 bool gz_reference_worker_busy(struct gz_reference_worker *worker, double *out_share)

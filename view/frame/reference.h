@@ -68,6 +68,10 @@ void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
 bool gz_reference_worker_ask(struct gz_reference_worker *worker,
 			     const struct gz_reference_view *view);
 
+/** Cancel the last request, if there is one; the next one is made even if it is the same. Does not
+ *  block. */
+void gz_reference_worker_cancel(struct gz_reference_worker *worker);
+
 /** Whether the last request is still being rendered, and the fraction done, 0 to 1. */
 bool gz_reference_worker_busy(struct gz_reference_worker *worker, double *out_share);
 

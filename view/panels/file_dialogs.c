@@ -18,6 +18,8 @@
  * text's. */
 #define AROUND_LIST 190.0f
 #define LINE_HEIGHT 1.35f
+/* Of the panel's width, for a name: the kind and the size follow. */
+#define NAME_SHARE 0.57f
 
 enum { LINES_LEAST = 3, LINES_MOST = 18, ENTRY_SIZE = GZ_FOLDER_NAME_SIZE + 64 };
 
@@ -130,8 +132,9 @@ static bool draw_folder_entry(struct gz_open_panel *panel, size_t index, bool se
 			      char out_path[GZ_PATH_SIZE])
 {
 	const struct gz_folder_entry *entry = &panel->folder.entries[index];
-	char label[ENTRY_SIZE], size[32] = "";
-	snprintf(label, sizeof label, "%s%s##%zu", entry->name, entry->is_folder ? "/" : "", index);
+	char label[ENTRY_SIZE + 32], name[ENTRY_SIZE], size[32] = "";
+	gz_widgets_elide(entry->name, NAME_SHARE, false, name, sizeof name);
+	snprintf(label, sizeof label, "%s%s##%zu", name, entry->is_folder ? "/" : "", index);
 	const bool chosen = gz_widget_row(label, selected, NULL);
 	if (!entry->is_folder)
 		print_file_size(entry->bytes, size, sizeof size);
@@ -142,8 +145,7 @@ static bool draw_folder_entry(struct gz_open_panel *panel, size_t index, bool se
 	if (!chosen)
 		return false;
 	/* Reading another folder frees the entry. */
-	char name[GZ_FOLDER_NAME_SIZE];
-	memcpy(name, entry->name, sizeof name);
+	memcpy(name, entry->name, sizeof entry->name);
 	return take_entry(panel, name, out_path);
 }
 
@@ -180,11 +182,15 @@ static bool draw_recent_files(const struct gz_open_panel *panel, char out_path[G
 	bool chosen = false;
 	if (!panel->recent || panel->recent->count == 0 || !gz_widget_heading("Recent", false))
 		return false;
-	for (size_t i = 0; i < panel->recent->count; i++)
-		if (gz_widget_row(panel->recent->paths[i], false, NULL)) {
+	for (size_t i = 0; i < panel->recent->count; i++) {
+		char name[GZ_PATH_SIZE], label[GZ_PATH_SIZE + 32];
+		gz_widgets_elide(panel->recent->paths[i], 0.95F, true, name, sizeof name);
+		snprintf(label, sizeof label, "%s##recent %zu", name, i);
+		if (gz_widget_row(label, false, NULL)) {
 			memcpy(out_path, panel->recent->paths[i], GZ_PATH_SIZE);
 			chosen = true;
 		}
+	}
 	return chosen;
 }
 

@@ -62,6 +62,9 @@ constexpr int GLFW_KEYS[KEYS] = { GLFW_KEY_LEFT,      GLFW_KEY_RIGHT,  GLFW_KEY_
 /* Most keys that are remembered from one frame to the next (chosen: nobody presses more). */
 constexpr int NOTED_MAX = 8;
 
+/* Most places along an axis that are tried for a panel (chosen: of a dozen others). */
+constexpr int EDGES_MAX = 26;
+
 /* State kept from frame to frame. */
 struct Memory {
 	int noted[NOTED_MAX]; /* of GLFW */
@@ -73,9 +76,10 @@ struct Memory {
 	bool enter_pressed, escape_pressed; /* since the last one */
 	int frames_since_tab;               /* Dear ImGui answers it after some */
 	bool in_columns;
-	bool in_bar;       /* the menu bar is being drawn */
-	float scale;       /* of the fonts and the style there are */
-	float asked_scale; /* 0: what the display says */
+	bool in_bar;          /* the menu bar is being drawn */
+	bool canvas_by_click; /* a click gave the canvas its keyboard */
+	float scale;          /* of the fonts and the style there are */
+	float asked_scale;    /* 0: what the display says */
 };
 
 Memory &memory()
@@ -252,6 +256,12 @@ bool canvas_has_keyboard()
 	return window && window->WasActive && (window->Flags & ImGuiWindowFlags_NoNavInputs);
 }
 
+/* The keyboard that a click gave the canvas is the picture's again while the mouse is over it. */
+bool canvas_lends_keyboard()
+{
+	return memory().canvas_by_click && !ImGui::GetIO().WantCaptureMouse;
+}
+
 /* Under this name a panel remembers that its canvas gets the keyboard. */
 ImGuiID focus_mark()
 {
@@ -321,6 +331,108 @@ void read_keys(gz_canvas &canvas)
 	canvas.insert_pressed = presses[INSERT] > 0;
 	if (presses[ESCAPE] > 0)
 		gz_widgets_release_keyboard();
+}
+
+/* A panel that others must not cover when they open. */
+bool is_in_the_way(const ImGuiWindow *window, const ImGuiWindow *own)
+{
+	const int other = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+			  ImGuiWindowFlags_Popup | ImGuiWindowFlags_Tooltip |
+			  ImGuiWindowFlags_ChildWindow;
+	return window != own && window->WasActive && !(window->Flags & other);
+}
+
+/* A panel to be placed. */
+struct Placing {
+	const ImGuiWindow *own;
+	ImVec2 size;
+	ImVec2 least, greatest; /* the room for it */
+	ImVec2 wanted;
+};
+
+/* Area of a panel at a place that others cover. */
+float covered_area(const Placing &placing, ImVec2 at)
+{
+	const ImRect here(at, ImVec2(at.x + placing.size.x, at.y + placing.size.y));
+	float area = 0;
+	for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows) {
+		ImRect both = window->Rect();
+		if (!is_in_the_way(window, placing.own) || !both.Overlaps(here))
+			continue;
+		both.ClipWith(here);
+		area += both.GetWidth() * both.GetHeight();
+	}
+	return area;
+}
+
+/* Where an edge of a panel may lie: at the edges of the room, and beside the other panels. */
+int possible_edges(const Placing &placing, int axis, float *edges)
+{
+	const float gap = MARGIN * gz_widgets_scale(), size = placing.size[axis];
+	int count = 0;
+	edges[count++] = placing.least[axis];
+	edges[count++] = placing.greatest[axis] - size;
+	for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows) {
+		if (!is_in_the_way(window, placing.own) || count + 2 > EDGES_MAX)
+			continue;
+		edges[count++] = window->Pos[axis] + window->Size[axis] + gap;
+		edges[count++] = window->Pos[axis] - size - gap;
+	}
+	return count;
+}
+
+bool has_room(const Placing &placing, ImVec2 at)
+{
+	return at.x >= placing.least.x && at.y >= placing.least.y &&
+	       at.x + placing.size.x <= placing.greatest.x + 1 &&
+	       at.y + placing.size.y <= placing.greatest.y + 1;
+}
+
+/* The place nearest to the wanted one that covers least of the others. */
+ImVec2 free_place(const Placing &placing)
+{
+	float x[EDGES_MAX], y[EDGES_MAX];
+	const int columns = possible_edges(placing, 0, x), rows = possible_edges(placing, 1, y);
+	ImVec2 best = placing.wanted;
+	float best_area = covered_area(placing, best), best_way = 0;
+	for (int i = 0; i < columns * rows; i++) {
+		const ImVec2 at(x[i % columns], y[i / columns]);
+		if (!has_room(placing, at))
+			continue;
+		const float area = covered_area(placing, at);
+		const float way = fabsf(at.x - placing.wanted.x) + fabsf(at.y - placing.wanted.y);
+		if (area < best_area || (area == best_area && way < best_way)) {
+			best = at;
+			best_area = area;
+			best_way = way;
+		}
+	}
+	return best;
+}
+
+/* A panel that has opened moves to a free place, once: its size is known from its first frame, in
+ * which it is not shown. */
+void avoid_other_panels(const char *title, const gz_panel_place &place)
+{
+	ImGuiWindow *own = ImGui::FindWindowByName(title);
+	const float margin = MARGIN * gz_widgets_scale();
+	const ImVec2 room = ImGui::GetIO().DisplaySize;
+	const bool right = place.at == GZ_PANEL_TOP_RIGHT || place.at == GZ_PANEL_BOTTOM_RIGHT;
+	const bool low = place.at == GZ_PANEL_BOTTOM_LEFT || place.at == GZ_PANEL_BOTTOM_RIGHT;
+	if (!own)
+		return;
+	bool *placed = own->StateStorage.GetBoolRef(ImHashStr("##placed"));
+	if (own->WasActive && !*placed) {
+		Placing placing = { own, ImGui::CalcWindowNextAutoFitSize(own),
+				    ImVec2(margin, margin + place.margin_top),
+				    ImVec2(room.x - margin, room.y - margin - place.margin_bottom),
+				    ImVec2(0, 0) };
+		placing.wanted =
+			ImVec2(right ? placing.greatest.x - placing.size.x : placing.least.x,
+			       low ? placing.greatest.y - placing.size.y : placing.least.y);
+		ImGui::SetNextWindowPos(free_place(placing));
+	}
+	*placed = own->WasActive;
 }
 
 } // namespace
@@ -430,8 +542,9 @@ bool gz_widgets_have_text(void)
 
 bool gz_widgets_have_navigation(void)
 {
-	return ImGui::GetCurrentContext() && (ImGui::GetIO().NavVisible || canvas_has_keyboard() ||
-					      ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup));
+	return ImGui::GetCurrentContext() &&
+	       (ImGui::GetIO().NavVisible || (canvas_has_keyboard() && !canvas_lends_keyboard()) ||
+		ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup));
 }
 
 bool gz_widgets_in_use(void)
@@ -551,6 +664,8 @@ bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 	if (!movable)
 		flags |= ImGuiWindowFlags_NoMove;
 	set_panel_place(*place, movable);
+	if (movable)
+		avoid_other_panels(title, *place);
 	ImGui::SetNextWindowBgAlpha(PANEL_ALPHA);
 	if (!place->takes_keyboard)
 		return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoFocusOnAppearing);
@@ -604,6 +719,30 @@ void gz_widgets_focus_next(void)
 void gz_widgets_focus_canvas(void)
 {
 	ImGui::GetStateStorage()->SetBool(focus_mark(), true);
+}
+
+/* Bytes of a character of UTF-8 that follow its first one. */
+static bool follows_in_character(char byte)
+{
+	return (byte & 0xc0) == 0x80;
+}
+
+void gz_widgets_elide(const char *text, float share, bool keep_end, char *out, size_t size)
+{
+	const float width = ImGui::GetWindowContentRegionMax().x * share;
+	const size_t length = strlen(text);
+	size_t from = 0, to = length;
+	snprintf(out, size, "%s", text);
+	while (to > from && ImGui::CalcTextSize(out).x > width) {
+		do {
+			if (keep_end)
+				from++;
+			else
+				to--;
+		} while (from < to && follows_in_character(text[keep_end ? from : to]));
+		snprintf(out, size, "%s%.*s%s", keep_end ? "…" : "", static_cast<int>(to - from),
+			 text + from, keep_end ? "" : "…");
+	}
 }
 
 void gz_widget_separator(void)
@@ -925,6 +1064,8 @@ void gz_widget_canvas(const char *id, float height, gz_canvas *out_canvas)
 		ImGui::SetFocusID(ImGui::GetItemID(), ImGui::GetCurrentWindow());
 	if (*take)
 		ImGui::SetWindowFocus();
+	if (*take)
+		memory().canvas_by_click = false;
 	*take = false;
 	gz_canvas canvas = {};
 	canvas.corner = place_of(corner);
@@ -941,7 +1082,9 @@ void gz_widget_canvas(const char *id, float height, gz_canvas *out_canvas)
 	canvas.shift = io.KeyShift;
 	canvas.control = io.KeyCtrl;
 	canvas.wheel = canvas.hovered ? io.MouseWheel : 0;
-	if (canvas.focused)
+	if (canvas.pressed || canvas.right_pressed)
+		memory().canvas_by_click = true;
+	if (canvas.focused && !canvas_lends_keyboard())
 		read_keys(canvas);
 	*out_canvas = canvas;
 }

@@ -220,6 +220,10 @@ void gz_widgets_focus_next(void);
 /** Give the keyboard to the next canvas of the panel. */
 void gz_widgets_focus_canvas(void);
 
+/** Shorten a text to a share of the panel's width, with an ellipsis at its end, or at its beginning
+ *  if the end is kept. */
+void gz_widgets_elide(const char *text, float share, bool keep_end, char *out, size_t size);
+
 /** A line between groups of widgets. */
 void gz_widget_separator(void);
 

@@ -12,6 +12,7 @@
 #include "view/capture/output.h"
 #include "view/capture/video.h"
 #include "view/panels/marks.h"
+#include "view/window/capture.h"
 #include "view/window/loading.h"
 #include "view/window/window_state.h"
 
@@ -188,11 +189,12 @@ static void finish_picture(struct gz_window_capture *self)
 	self->picture = NULL;
 }
 
-static void add_captured_scene(const struct gz_window *window, struct picture_job *job)
+static void add_captured_scene(const struct gz_window *window,
+			       const struct gz_scene_settings *settings, struct picture_job *job)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	job->has_scene = true;
-	memcpy(&job->settings, &window->made, sizeof job->settings);
+	memcpy(&job->settings, settings, sizeof job->settings);
 	memcpy(&job->transfer, &scene->transfer, sizeof job->transfer);
 	job->volume = &scene->volume;
 	snprintf(job->scene_path, sizeof job->scene_path, "%s", gz_window_scene_path(window));
@@ -204,29 +206,30 @@ static void add_captured_scene(const struct gz_window *window, struct picture_jo
 }
 
 static enum gz_result start_picture_job(struct gz_window *window, struct picture_job *job,
-					int width, int height)
+					const struct gz_scene_settings *settings)
 {
-	enum gz_result r = gz_capture_name(window->options->pictures, ".png", job->path);
-	if (r == GZ_OK)
-		r = gz_window_read_back(width, height, &job->image);
+	const enum gz_result r = gz_capture_name(window->options->pictures, ".png", job->path);
 	if (r != GZ_OK)
 		return r;
-	if (window->maker && window->any_shown)
-		add_captured_scene(window, job);
+	if (settings)
+		add_captured_scene(window, settings, job);
 	return pthread_create(&job->thread, NULL, write_captured_picture, job) == 0 ? GZ_OK
 										    : GZ_ERR_NO_MEM;
 }
 
-static void take_picture(struct gz_window *window, int width, int height)
+/* settings NULL: the picture has no scene. */
+static void write_picture(struct gz_window *window, struct gz_image *image,
+			  const struct gz_scene_settings *settings)
 {
 	struct gz_window_capture *self = window->capture;
-	self->picture_wanted = NOTHING;
 	finish_picture(self);
 	struct picture_job *job = calloc(1, sizeof *job);
 	enum gz_result r = GZ_ERR_NO_MEM;
 	if (job) {
 		job->log = window->log;
-		r = start_picture_job(window, job, width, height);
+		job->image = *image;
+		*image = (struct gz_image) { 0 };
+		r = start_picture_job(window, job, settings);
 	}
 	if (r == GZ_OK) {
 		self->picture = job;
@@ -236,6 +239,25 @@ static void take_picture(struct gz_window *window, int width, int height)
 	if (job)
 		gz_image_free(&job->image);
 	free(job);
+}
+
+void gz_window_write_picture(struct gz_window *window, struct gz_image *image,
+			     const struct gz_scene_settings *settings)
+{
+	write_picture(window, image, settings);
+}
+
+static void take_picture(struct gz_window *window, int width, int height)
+{
+	struct gz_image image = { 0 };
+	window->capture->picture_wanted = NOTHING;
+	const enum gz_result r = gz_window_read_back(width, height, &image);
+	if (r == GZ_OK)
+		write_picture(window, &image,
+			      window->maker && window->any_shown ? &window->made : NULL);
+	else
+		gz_err(window->log, "no picture: %s", gz_result_text(r));
+	gz_image_free(&image);
 }
 
 static void paint_picture(struct gz_window *window, int width, int height)
@@ -254,6 +276,11 @@ static void want_picture(struct gz_window *window, int kind)
 {
 	window->capture->picture_wanted = (enum picture_kind)kind;
 	window->present_needed = true;
+}
+
+void gz_window_write_shown(struct gz_window *window)
+{
+	want_picture(window, PICTURE);
 }
 
 static void turn_picture(struct gz_window *window)
@@ -322,14 +349,14 @@ static const struct gz_window_action capture_actions[] = {
 	  .is_on = is_video_on,
 	  .run = toggle_video },
 	{ .key = GLFW_KEY_F12,
+	  .modifiers = GZ_KEY_CONTROL,
 	  .number = PICTURE,
-	  .keys = "F12",
-	  .help = "save the picture, with its scene in it",
-	  .name = "Save picture",
+	  .keys = "Ctrl+F12",
+	  .help = "save the picture as it is shown, with its scene",
+	  .name = "Save picture as shown",
 	  .menu = GZ_MENU_FILE,
 	  .section = 2,
-	  .on_picture = true,
-	  .words = "screenshot image png export capture",
+	  .words = "screenshot image png export capture foveated",
 	  .run = want_picture },
 	{ .key = GLFW_KEY_F12,
 	  .modifiers = GZ_KEY_SHIFT,

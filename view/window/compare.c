@@ -6,8 +6,8 @@
 #include <GLFW/glfw3.h>
 
 #include "view/draw/quad.h"
-#include "view/frame/reference.h"
 #include "view/panels/widgets.h"
+#include "view/window/standard.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -25,6 +25,10 @@
 #define LABEL_MARGIN  8.0f
 #define CORNER_WIDTH  300.0f
 #define CORNER_HEIGHT 56.0f
+/* Of the circle at the gaze, unscaled (chosen: it covers nothing that is looked at). */
+#define GAZE_RADIUS 18.0F
+
+static const struct gz_paint gaze_paint = { 255, 64, 64, 255 };
 
 struct gz_window_compare {
 	struct gz_compare drawing;
@@ -35,6 +39,7 @@ struct gz_window_compare {
 	bool any;              /* it is in the texture */
 	bool busy;
 	double share, share_shown;
+	struct gz_point gaze_drawn; /* where its circle is */
 };
 
 static bool is_compare_wanted(const struct gz_window *window)
@@ -137,13 +142,6 @@ static enum gz_result open_compare_drawing(struct gz_window *window)
 	return r;
 }
 
-/* Called on the worker's thread. */
-static void wake_loop_for_standard(void *user)
-{
-	(void)user;
-	glfwPostEmptyEvent();
-}
-
 static void drop_standard(struct gz_window_compare *self)
 {
 	gz_reference_worker_stop(&self->worker);
@@ -159,23 +157,9 @@ static int shown_technique(const struct gz_window *window)
 
 static void start_standard_worker(struct gz_window *window)
 {
-	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
-	struct gz_object objects[GZ_SCENE_LISTED_MAX];
-	const size_t count =
-		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
-	const struct gz_reference_source source = {
-		.objects = objects,
-		.object_count = count,
-		.backend = gz_frame_standard_backend(window->maker),
-		.gl_memory_bytes = (size_t)window->options->gl_memory_mib << 20,
-		.threads = (window->options->threads + 1) / 2,
-		.finished = wake_loop_for_standard,
-		.log = window->log,
-	};
 	window->compare->technique = shown_technique(window);
-	window->compare->backend = source.backend;
-	const enum gz_result r =
-		gz_reference_worker_start(&source, &scene->transfer, &window->compare->worker);
+	window->compare->backend = gz_frame_standard_backend(window->maker);
+	const enum gz_result r = gz_window_start_standard(window, &window->compare->worker);
 	if (r == GZ_OK)
 		return;
 	gz_err(window->log, "no standard picture to compare with: %s",
@@ -189,16 +173,8 @@ static void ask_for_standard(struct gz_window *window)
 {
 	if (!window->compare->worker || !window->any_shown)
 		return;
-	const struct gz_reference_view view = {
-		.camera = window->made.camera,
-		.rays = window->made.rays,
-		.image_sampling_rate = window->made.image_sampling_rate,
-		.width = window->record.width,
-		.height = window->record.height,
-	};
-	gz_reference_worker_set_transfer(window->compare->worker,
-					 &gz_frame_maker_scene(window->maker)->transfer);
-	gz_reference_worker_ask(window->compare->worker, &view);
+	gz_window_ask_for_standard(window, window->compare->worker, window->record.width,
+				   window->record.height);
 }
 
 static void take_standard(struct gz_window *window)
@@ -294,13 +270,35 @@ static void draw_divider(struct gz_window *window, const char *standard)
 	draw_compare_label(window, standard, x, false);
 }
 
+/* The part that is sharp by its rule lies around the gaze: without the cross, a circle tells where.
+ */
+static void draw_compared_gaze(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	const struct gz_place room = gz_widgets_room();
+	const struct gz_point at = gaze->reading.point;
+	const struct gz_place middle = { at.x * room.x, at.y * room.y };
+	window->compare->gaze_drawn = at;
+	if (!gaze->reading.known || window->settings.view.gaze_cursor)
+		return;
+	gz_draw_circle(GZ_LAYER_PICTURE, middle, GAZE_RADIUS, gz_paint_ground, 3);
+	gz_draw_circle(GZ_LAYER_PICTURE, middle, GAZE_RADIUS, gaze_paint, 1.5F);
+}
+
+/* The circle moves with the gaze. */
+static bool compared_gaze_follows(struct gz_window *window, const struct gz_window_gaze *gaze)
+{
+	const struct gz_point at = gaze->reading.point, drawn = window->compare->gaze_drawn;
+	return is_compare_wanted(window) && gaze->reading.known &&
+	       (at.x != drawn.x || at.y != drawn.y);
+}
+
 static void draw_compare_marks(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	(void)gaze;
 	struct gz_window_compare *self = window->compare;
 	char standard[64], text[128];
 	if (!is_compare_wanted(window) || !window->any_shown)
 		return;
+	draw_compared_gaze(window, gaze);
 	self->share_shown = self->share;
 	print_standard(self, standard, sizeof standard);
 	if (window->settings.view.compare == GZ_COMPARE_SPLIT) {
@@ -363,6 +361,7 @@ const struct gz_window_part gz_window_compare_part = {
 	.data_leaving = leave_compared_data,
 	.turn = turn_compare,
 	.frame_made = ask_for_standard,
+	.follows = compared_gaze_follows,
 	.paint = paint_compare,
 	.panels = draw_compare_marks,
 	.grab = grab_divider,

@@ -144,6 +144,7 @@ struct gz_window_part {
 	ROW(gaze)          /* sources of the gaze */ \
 	ROW(status)        /* the line on top, and the lower left corner */ \
 	ROW(compare)       /* the standard picture beside the method's */ \
+	ROW(refine)        /* full quality at rest */ \
 	ROW(overlay)       /* the tint that shows the plan */ \
 	ROW(trail)         /* the last second of the gaze */ \
 	ROW(light)         /* moves the light; before the camera, which takes all other drags */ \
@@ -162,6 +163,7 @@ struct gz_window_part {
 	ROW(isovalue)      /* surfaces without triangles while they change; behind replay */ \
 	ROW(labels)        /* surfaces of labels with other settings */ \
 	ROW(session)       /* records sessions; behind all that change the gaze */ \
+	ROW(full_picture)  /* saves pictures of full quality */ \
 	ROW(capture)       /* writes pictures and videos; behind all that paint */ \
 	ROW(basics)        /* methods, settings, cursor; behind all whose panels Escape closes */ \
 	ROW(unsaved)       /* asks before changes are lost, and quits; last to take Escape */ \

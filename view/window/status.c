@@ -11,6 +11,7 @@
 #include "view/window/displays.h"
 #include "view/window/gaze.h"
 #include "view/window/latency.h"
+#include "view/window/refine.h"
 #include "view/window/window_state.h"
 
 /* Least time between changes of numbers, and for a warning (chosen: readable, and cheap). */
@@ -70,9 +71,10 @@ static bool update_line(struct gz_window *window)
 	char budget[48], line[TEXT_SIZE];
 	const struct gz_frame_record *record = &window->record;
 	print_budget(record, budget, sizeof budget);
-	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms%s  %llu rays", record->method,
+	snprintf(line, sizeof line, "%s  %dx%d  %.1f ms%s  %llu rays%s", record->method,
 		 record->width, record->height, record->total_ms, budget,
-		 (unsigned long long)record->rays);
+		 (unsigned long long)record->rays,
+		 gz_window_is_refined(window) ? "  |  at rest: full quality" : "");
 	const bool changed = strcmp(line, window->status->line) != 0;
 	memcpy(window->status->line, line, sizeof line);
 	return changed;

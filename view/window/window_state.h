@@ -53,6 +53,7 @@ struct gz_window {
 	struct gz_window_displays *displays;
 	struct gz_window_files *files;
 	struct gz_window_frame_times *frame_times;
+	struct gz_window_full_picture *full_picture;
 	struct gz_window_gaze_panel *gaze_panel;
 	struct gz_window_history *history;
 	struct gz_window_isovalue *isovalue;
@@ -64,6 +65,7 @@ struct gz_window {
 	struct gz_window_notices *notices_state;
 	struct gz_window_objects *objects;
 	struct gz_overlay *overlay;
+	struct gz_window_refine *refine;
 	struct gz_window_replay *replay;
 	struct gz_window_series *series;
 	struct gz_window_session *session;
