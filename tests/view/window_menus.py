@@ -3,12 +3,13 @@
 window_menus.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
+import glob
 import os
 import sys
 import unittest
 
-from picture import PATIENCE_S
-from window_case import SCENE, SIZE, WindowCase
+from picture import PATIENCE_S, read_png, run
+from window_case import GAZEVIEW, SCENE, SIZE, WindowCase
 
 BAR = (36, 36, 36)  # the menu bar's ground
 
@@ -101,6 +102,27 @@ class Menus(WindowCase):
         self.until(lambda p: not self.bar_is_shown(p), "no bar")
         self.find("exit")
         self.press_last("Return")
+
+    def test_picture_at_rest_and_saved_is_of_full_quality(self):
+        self.refine = "yes"
+        self.start_own_scene("--pictures", self.place.name, "--backend", "cpu")
+        out = os.path.join(self.place.name, "standard.png")
+        done = run(GAZEVIEW, "--headless", self.own, "--method", "standard", "--size",
+                   "%dx%d" % SIZE, "--backend", "cpu", "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        standard = read_png(out)
+        part = (60, 55, 420, 250)
+        self.move(240, 160)
+        self.until(lambda p: p.part(*part) == standard.part(*part), "full quality at rest")
+        self.move(60, 60)
+        self.until(lambda p: p.part(*part) != standard.part(*part), "coarse beside the gaze")
+        self.tool("key", "F12")
+        saved = self.wait_for(lambda: glob.glob(os.path.join(self.place.name, "gazeview-*.png")),
+                              "a saved picture")
+        self.tool("key", "q")
+        self.viewer.wait(timeout=PATIENCE_S)
+        self.assertIn("written", self.messages())
+        self.assertTrue(read_png(saved[0]) == standard, "another picture is saved")
 
     def title(self):
         self.until_idle()

@@ -72,12 +72,12 @@ class Leaves(WindowCase):
         self.key("F9")
         self.until(self.red_dot, "a red dot")
         self.move(300, 150)
-        self.key("F12")
+        self.key("ctrl+F12")
         self.appears("*.png", 1)
         self.drag(200, 200, 90, 40)
         self.key("2")
         self.move(120, 120)
-        self.key("F12")
+        self.key("ctrl+F12")
         self.appears("*.png", 2)
         self.key("F9")
         self.until(lambda p: not self.red_dot(p), "no red dot")
@@ -115,7 +115,7 @@ class Leaves(WindowCase):
             said = self.viewer.stderr.readline()
             self.assertTrue(said, "gazeview has ended")
         frames = int(re.search(r"all (\d+) frames have been shown; the last one stays", said)[1])
-        self.key("F12")
+        self.key("ctrl+F12")
         (shot,) = self.appears("gazeview-*.png")
         self.quit()
         done = run(GAZEVIEW, "--headless", "--replay", session, "--out", self.path("f%04d.png"))
@@ -144,7 +144,7 @@ class Leaves(WindowCase):
         self.tool("mouseup", 1)
         time.sleep(0.4)  # the rest that is tested
         self.until_idle()
-        self.key("F12")
+        self.key("ctrl+F12")
         (shot,) = self.appears("gazeview-*.png")
         self.quit()
         with open(os.path.join(session, "frames.tsv"), encoding="ascii") as table:
@@ -179,7 +179,7 @@ class Leaves(WindowCase):
 
     def test_screenshot_has_its_scene_and_no_panels_unless_asked_for(self):
         self.begin("--method", "ddc", gaze="0.3,0.6")
-        self.key("F12")
+        self.key("ctrl+F12")
         (plain,) = self.appears("*.png")
         self.key("shift+F12")
         both = self.appears("*.png", 2)

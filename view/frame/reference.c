@@ -166,7 +166,8 @@ static void *reference_thread(void *user)
 	struct gz_reference_view view;
 	/* On Linux this holds for this thread and those it starts. If it is refused, they run at
 	 * the normal priority. */
-	(void)setpriority(PRIO_PROCESS, 0, NICENESS);
+	if (!worker->source.urgent)
+		(void)setpriority(PRIO_PROCESS, 0, NICENESS);
 	while (wait_for_work(worker, &view)) {
 		enum gz_result r = show_newest(worker);
 		if (r == GZ_OK)

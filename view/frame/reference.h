@@ -39,6 +39,7 @@ struct gz_reference_source {
 	const char *backend;
 	size_t gl_memory_bytes; /**< as in struct gz_backend_params */
 	int threads;            /**< threads to cast with; 0: half of the processors */
+	bool urgent;            /**< someone waits for it: the normal priority */
 	/** Called on the worker's thread when a picture is finished or has failed. */
 	void (*finished)(void *user);
 	void *user;

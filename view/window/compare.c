@@ -159,7 +159,7 @@ static void start_standard_worker(struct gz_window *window)
 {
 	window->compare->technique = shown_technique(window);
 	window->compare->backend = gz_frame_standard_backend(window->maker);
-	const enum gz_result r = gz_window_start_standard(window, &window->compare->worker);
+	const enum gz_result r = gz_window_start_standard(window, false, &window->compare->worker);
 	if (r == GZ_OK)
 		return;
 	gz_err(window->log, "no standard picture to compare with: %s",

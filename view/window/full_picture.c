@@ -27,9 +27,15 @@ struct gz_window_full_picture {
 	struct gz_reference_worker *worker; /* makes a picture; NULL: none is in the making */
 	struct gz_scene_settings settings;  /* of that picture */
 	int64_t start_ns;
-	bool open;      /* the panel is */
-	int size_px[2]; /* as chosen; 0: the window's */
+	int64_t drawn_s; /* in the mark */
+	bool open;       /* the panel is */
+	int size_px[2];  /* as chosen; 0: the window's */
 };
+
+static int64_t mark_seconds(const struct gz_window_full_picture *self)
+{
+	return (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S;
+}
 
 static void chosen_size(const struct gz_window *window, int size_px[2])
 {
@@ -51,7 +57,7 @@ static void save_full_picture(struct gz_window *window, int number)
 		gz_warn(window->log, "a picture is still being made; wait a moment");
 		return;
 	}
-	if (gz_window_start_standard(window, &self->worker) != GZ_OK) {
+	if (gz_window_start_standard(window, true, &self->worker) != GZ_OK) {
 		gz_info(window->log, "this scene has no picture of full quality: it is saved as it "
 				     "is shown");
 		gz_window_write_shown(window);
@@ -71,10 +77,13 @@ static void turn_full_picture(struct gz_window *window)
 	double share;
 	if (!self->worker)
 		return;
-	if (gz_reference_worker_take(self->worker, &image))
+	if (gz_reference_worker_take(self->worker, &image)) {
 		gz_window_write_picture(window, &image, &self->settings);
-	else if (gz_reference_worker_busy(self->worker, &share))
+	} else if (gz_reference_worker_busy(self->worker, &share)) {
+		window->present_needed =
+			window->present_needed || mark_seconds(self) != self->drawn_s;
 		return;
+	}
 	gz_image_free(&image);
 	gz_reference_worker_stop(&self->worker); /* a failure has been logged */
 	window->present_needed = true;
@@ -121,8 +130,9 @@ static void draw_full_picture(struct gz_window *window, const struct gz_window_g
 	int size_px[2];
 	(void)gaze;
 	if (self->worker)
-		gz_marks_draw_running(MARK_ROW, "making a picture", false,
-				      (gz_clock_now_ns() - self->start_ns) / GZ_NS_PER_S);
+		self->drawn_s = mark_seconds(self);
+	if (self->worker)
+		gz_marks_draw_running(MARK_ROW, "making a picture", false, self->drawn_s);
 	if (!self->open || !window->maker || !window->any_shown)
 		return;
 	chosen_size(window, size_px);

@@ -77,7 +77,7 @@ static void start_refining(struct gz_window *window)
 	struct gz_window_refine *self = window->refine;
 	self->asked = true;
 	if (!self->worker && (strcmp(gz_frame_standard_backend(window->maker), "cpu") != 0 ||
-			      gz_window_start_standard(window, &self->worker) != GZ_OK)) {
+			      gz_window_start_standard(window, false, &self->worker) != GZ_OK)) {
 		self->refused = true;
 		self->asked = false;
 		return;

@@ -11,7 +11,7 @@ static void wake_loop_for_standard(void *user)
 	glfwPostEmptyEvent();
 }
 
-enum gz_result gz_window_start_standard(const struct gz_window *window,
+enum gz_result gz_window_start_standard(const struct gz_window *window, bool urgent,
 					struct gz_reference_worker **out_worker)
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
@@ -24,6 +24,7 @@ enum gz_result gz_window_start_standard(const struct gz_window *window,
 		.backend = gz_frame_standard_backend(window->maker),
 		.gl_memory_bytes = (size_t)window->options->gl_memory_mib << 20,
 		.threads = (window->options->threads + 1) / 2,
+		.urgent = urgent,
 		.finished = wake_loop_for_standard,
 		.log = window->log,
 	};

@@ -10,10 +10,12 @@
 
 struct gz_window;
 
-/** Start a worker for the scene shown; it wakes the window's loop when a picture is finished. Stop
+/** Start a worker for the scene shown; it wakes the window's loop when a picture is finished.
+ * Unless
+ *  @p urgent it gives way to the frames. Stop
  *  it in scene_leaving, data_leaving and gl_close. @return what gz_reference_worker_start()
  * returns; not logged */
-enum gz_result gz_window_start_standard(const struct gz_window *window,
+enum gz_result gz_window_start_standard(const struct gz_window *window, bool urgent,
 					struct gz_reference_worker **out_worker);
 
 /** Ask for the picture on the screen with @p width times @p height px, with the transfer function
