@@ -50,6 +50,8 @@ const struct gz_option gz_view_setting_options[] = {
 	  .preset = "8", .help = "difference: factor by which it is amplified" },
 	{ "view.frame_times", GZ_OPTION_BOOL, AT(frame_times), .preset = "no",
 	  .help = "window: a plot of the frame times" },
+	{ "view.gaze_mark", GZ_OPTION_BOOL, AT(gaze_mark), .preset = "yes",
+	  .help = "window: a circle at the gaze in comparisons" },
 	{ "view.refine", GZ_OPTION_BOOL, AT(refine), .preset = "yes",
 	  .help = "window: full quality everywhere once camera and gaze rest for half a second" },
 	SAVED(1),

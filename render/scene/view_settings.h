@@ -60,6 +60,7 @@ struct gz_view_settings {
 	double split; /**< where the standard picture begins, as a fraction of the width */
 	double difference_gain; /**< factor, 1 to GZ_DIFFERENCE_GAIN_MAX */
 	bool frame_times;       /**< the plot of the frame times */
+	bool gaze_mark;         /**< a circle at the gaze in comparisons */
 	bool refine;            /**< the window shows full quality while camera and gaze rest */
 	char saved[GZ_SAVED_VIEWS][GZ_SAVED_VIEW_SIZE]; /**< saved views; empty: none */
 };

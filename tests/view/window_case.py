@@ -103,7 +103,8 @@ class WindowCase(unittest.TestCase):
 
     def scene_keys(self, words):
         """An experiment has settings of its own."""
-        return () if "--experiment" in words else ("--view.refine=%s" % self.refine,)
+        return () if "--experiment" in words else (
+            "--view.refine=%s" % self.refine, "--view.gaze_mark=no")
 
     def start(self, *more, scene=SCENE):
         """Start gazeview with a scene, by default the small one. -> its first picture"""
@@ -233,6 +234,19 @@ class WindowCase(unittest.TestCase):
             return found.returncode == 0 and [n for n in found.stdout.split() if n != than]
 
         self.window = self.wait_for(others, "a window")[-1]
+
+    def leave(self):
+        """Press Q, and discard changes if that is asked."""
+        self.tool("key", "q")
+        deadline = time.monotonic() + PATIENCE_S
+        while self.viewer.poll() is None and time.monotonic() < deadline:
+            name = run("xdotool", "getwindowname", self.window, env=self.environment).stdout
+            if name.startswith("*"):
+                self.move(SIZE[0] // 2 - 134, SIZE[1] // 2 + 17)  # the button Discard
+                for what in ("mousedown", "mouseup"):
+                    time.sleep(0.2)  # a frame must see it
+                    run("xdotool", what, "1", env=self.environment)
+            time.sleep(0.1)
 
     def messages(self):
         """The viewer's messages, once it has ended."""

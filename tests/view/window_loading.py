@@ -92,7 +92,7 @@ class WindowLoading(WindowCase):
 
     def quit(self):
         """Quit. -> exit status, messages"""
-        self.tool("key", "q")
+        self.leave()
         status = self.viewer.wait(timeout=PATIENCE_S)
         return status, self.messages()
 

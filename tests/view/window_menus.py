@@ -62,10 +62,10 @@ class Menus(WindowCase):
         self.until_idle()
         # Gaze, Cross at the gaze. While the mouse is in the bar, its gaze stays.
         self.click(149, 9)
-        self.click(180, 106)
-        self.until(lambda p: self.near(self.red_middle(p), (180, 106)), "a cross")
+        self.click(180, 123)
+        self.until(lambda p: self.near(self.red_middle(p), (180, 123)), "a cross")
         self.move(260, 9)
-        self.assertTrue(self.near(self.red_middle(self.rest()), (180, 106)))
+        self.assertTrue(self.near(self.red_middle(self.rest()), (180, 123)))
         # A right click on the picture, and its last row: the list of keys.
         self.click(60, 60, button=3)
         shown = self.rest()
@@ -123,6 +123,29 @@ class Menus(WindowCase):
         self.viewer.wait(timeout=PATIENCE_S)
         self.assertIn("written", self.messages())
         self.assertTrue(read_png(saved[0]) == standard, "another picture is saved")
+
+    def test_start_window_opens_a_recent_scene_by_its_picture(self):
+        self.start_own_scene()
+        self.until_idle()
+        self.leave()
+        self.assertEqual(self.viewer.returncode, 0)
+        self.viewer.communicate()
+        pictures = os.path.join(self.place.name, "gazecast", "pictures")
+        self.assertTrue(os.listdir(pictures))
+        self.launch("--gaze", "mouse")
+        self.move(SIZE[0] // 2, 5)
+        empty = self.rest()
+        top = next(y for y in range(30, 200) if self.is_picture(empty, y))
+        self.click(60, top + 5)
+        self.until(self.shows_something, "the recent scene")
+        self.leave()
+        self.assertEqual(self.viewer.returncode, 0)
+        self.viewer.communicate()
+        self.viewer = None
+
+    def is_picture(self, picture, y):
+        """Whether the small picture of the first recent file has blue shells in this row."""
+        return any(b > r + 30 and b > 60 for r, g, b in (picture.at(x, y) for x in range(20, 90)))
 
     def title(self):
         self.until_idle()

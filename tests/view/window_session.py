@@ -40,7 +40,7 @@ class Leaves(WindowCase):
         self.tool("mouseup", 1)
 
     def quit(self):
-        self.key("q")
+        self.leave()
         _, said = self.viewer.communicate(timeout=PATIENCE_S)
         self.assertEqual(self.viewer.returncode, 0, said)
         return said

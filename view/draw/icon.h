@@ -11,6 +11,9 @@
  * is smoothed when it is scaled. @return its name of OpenGL; 0: no memory */
 unsigned gz_icon_make(const uint8_t *grey, int edge);
 
+/** Make a texture of RGBA pixels, the topmost row first. @return as gz_icon_make() */
+unsigned gz_icon_make_colour(const uint8_t *rgba, int width, int height);
+
 /** Delete it and set it to 0. Accepts a pointer to 0. */
 void gz_icon_free(unsigned *icon);
 

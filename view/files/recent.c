@@ -1,5 +1,6 @@
 #include "view/files/recent.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -81,4 +82,39 @@ enum gz_result gz_recent_write(const struct gz_recent *recent, const char *file,
 	const enum gz_result result = gz_text_write(&text, file, log);
 	gz_text_free(&text);
 	return result;
+}
+
+bool gz_recent_is_first(const struct gz_recent *recent, const char *path)
+{
+	char *real = recent->count > 0 ? realpath(path, NULL) : NULL;
+	const bool first = real && strcmp(real, recent->paths[0]) == 0;
+	free(real);
+	return first;
+}
+
+/* FNV-1a with 64 bits (Fowler, Noll and Vo; draft-eastlake-fnv). */
+static uint64_t hash_of(const char *text)
+{
+	uint64_t hash = UINT64_C(14695981039346656037);
+	for (; *text; text++)
+		hash = (hash ^ (unsigned char)*text) * UINT64_C(1099511628211);
+	return hash;
+}
+
+enum gz_result gz_recent_picture(const char *path, char out_path[GZ_PATH_SIZE])
+{
+	char list[GZ_PATH_SIZE];
+	if (gz_recent_file(list) != GZ_OK)
+		return GZ_ERR_NOT_FOUND;
+	*strrchr(list, '/') = '\0';
+	const enum gz_result r = gz_text_print(out_path, GZ_PATH_SIZE, "%s/pictures/%016llx.png",
+					       list, (unsigned long long)hash_of(path));
+	return r == GZ_OK ? GZ_OK : GZ_ERR_NOT_FOUND;
+}
+
+enum gz_result gz_recent_write_picture(const struct gz_image *image, const char *file,
+				       const struct gz_log *log)
+{
+	make_state_folders(file);
+	return gz_image_write_png(image, file, log);
 }

@@ -7,11 +7,13 @@
 #ifndef GZ_VIEW_FILES_RECENT_H
 #define GZ_VIEW_FILES_RECENT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/log.h"
 #include "base/result.h"
 #include "protocol/gaze.h"
+#include "render/picture/image.h"
 
 /** Largest number of paths. Chosen: a list that can be read at a glance. */
 #define GZ_RECENT_MAX 12
@@ -36,6 +38,20 @@ void gz_recent_read(const char *file, struct gz_recent *out_recent);
 /** Move @p path, made absolute, to the top of the list. A path that does not exist, is too long or
  * contains a line break is ignored. */
 void gz_recent_add(struct gz_recent *recent, const char *path);
+
+/** Whether @p path is the newest of the list. */
+bool gz_recent_is_first(const struct gz_recent *recent, const char *path);
+
+/**
+ * Where the small picture of a recent file is kept: beside the list, under a name made of the path.
+ *
+ * @retval GZ_ERR_NOT_FOUND  as gz_recent_file()
+ */
+enum gz_result gz_recent_picture(const char *path, char out_path[GZ_PATH_SIZE]);
+
+/** Write such a picture as PNG, creating its folders. @return what gz_image_write_png() returns */
+enum gz_result gz_recent_write_picture(const struct gz_image *image, const char *file,
+				       const struct gz_log *log);
 
 /**
  * Write the list, creating its folders.

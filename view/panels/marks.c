@@ -11,8 +11,6 @@
 #define LETTER_SIZE   2.0f
 #define LETTER_MARGIN 36.0f /* below the text line */
 #define MESSAGE_SIZE  2.0f
-#define TITLE_SIZE    2.0f
-#define WELCOME_SIZE  1.3f
 #define DOT_RADIUS    5.0f
 
 /* Size of a line with its NUL, bytes. */
@@ -165,20 +163,6 @@ void gz_marks_draw_message(const char *text)
 		gz_marks_draw_centred(GZ_LAYER_TOP, y, MESSAGE_SIZE, dark, line);
 		at += length + (at[length] == '\n');
 	}
-}
-
-void gz_marks_draw_welcome(void)
-{
-	const struct gz_paint faint = { 170, 175, 185, 255 };
-	const struct gz_paint plain = gz_paint_plain;
-	const enum gz_layer layer = GZ_LAYER_PICTURE;
-	const float gap = gz_widgets_line_height() / 2;
-	float y = gz_widgets_room().y * 0.35f;
-	y = gz_marks_draw_centred(layer, y, TITLE_SIZE, plain, "gazeview") + 2 * gap;
-	y = gz_marks_draw_centred(layer, y, WELCOME_SIZE, plain, "Drop a volume or a scene here,");
-	y = gz_marks_draw_centred(layer, y, WELCOME_SIZE, plain, "or press Ctrl+O to open one.") +
-	    gap;
-	gz_marks_draw_centred(layer, y, 1, faint, "H: all keys   N: messages   Q: quit");
 }
 
 /* ---- legend ---- */

@@ -52,9 +52,6 @@ float gz_marks_draw_centred(enum gz_layer layer, float y, float size, struct gz_
  */
 void gz_marks_draw_message(const char *text);
 
-/** Draw what a window without a scene shows. */
-void gz_marks_draw_welcome(void);
-
 /** How much of the first line of @p text fits into @p width: whole words, at least one. @return
  *  bytes, at most 511 */
 size_t gz_marks_fit(const char *text, float size, float width);

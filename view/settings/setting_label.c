@@ -78,6 +78,7 @@ static const struct {
 	{ "view.compare", "compare with standard" },
 	{ "view.split", "divider, share of width" },
 	{ "view.difference_gain", "difference, times" },
+	{ "view.gaze_mark", "circle in comparisons" },
 	{ "view.refine", "refine at rest" },
 	{ "view.frame_times", "plot of frame times" },
 };

@@ -278,7 +278,8 @@ static void draw_compared_gaze(struct gz_window *window, const struct gz_window_
 	const struct gz_point at = gaze->reading.point;
 	const struct gz_place middle = { at.x * room.x, at.y * room.y };
 	window->compare->gaze_drawn = at;
-	if (!gaze->reading.known || window->settings.view.gaze_cursor)
+	if (!gaze->reading.known || window->settings.view.gaze_cursor ||
+	    !window->settings.view.gaze_mark)
 		return;
 	gz_draw_circle(GZ_LAYER_PICTURE, middle, GAZE_RADIUS, gz_paint_ground, 3);
 	gz_draw_circle(GZ_LAYER_PICTURE, middle, GAZE_RADIUS, gaze_paint, 1.5F);
@@ -288,8 +289,8 @@ static void draw_compared_gaze(struct gz_window *window, const struct gz_window_
 static bool compared_gaze_follows(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_point at = gaze->reading.point, drawn = window->compare->gaze_drawn;
-	return is_compare_wanted(window) && gaze->reading.known &&
-	       (at.x != drawn.x || at.y != drawn.y);
+	return is_compare_wanted(window) && window->settings.view.gaze_mark &&
+	       gaze->reading.known && (at.x != drawn.x || at.y != drawn.y);
 }
 
 static void draw_compare_marks(struct gz_window *window, const struct gz_window_gaze *gaze)

@@ -181,7 +181,7 @@ void gz_window_framebuffer(const struct gz_window *window, int *out_width, int *
 
 struct gz_window_share gz_window_share(const struct gz_window *window)
 {
-	const bool fills = window->options->gaze_fills_window;
+	const bool fills = window->options->gaze_fills_window || gz_window_is_simulating(window);
 	return gz_window_share_of(fills ? NULL : gz_window_tracker_monitor(window),
 				  window->displays->rect_px);
 }

@@ -177,6 +177,16 @@ static bool may_open_files(const struct gz_window *window)
 	return !window->alone; /* an experiment shows its own scenes */
 }
 
+void gz_window_ask_for_file(struct gz_window *window)
+{
+	show_open_panel(window, 0);
+}
+
+const struct gz_recent *gz_window_recent(const struct gz_window *window)
+{
+	return &window->files->recent;
+}
+
 /* Of several files the first is opened; a DICOM slice stands for its series. */
 static void on_drop(GLFWwindow *glfw, int count, const char *paths[])
 {

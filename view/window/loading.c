@@ -11,7 +11,6 @@
 
 #include "base/clock.h"
 #include "view/panels/file_dialogs.h"
-#include "view/panels/marks.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -574,8 +573,6 @@ static void draw_loading_panels(struct gz_window *window, const struct gz_window
 {
 	struct load_job *job = window->loading->job;
 	(void)gaze;
-	if (!window->maker && !job)
-		gz_marks_draw_welcome();
 	if (!job || gz_window_offered_series(window) || !progress_due(job, window->maker != NULL))
 		return;
 	const struct load_progress progress = load_job_progress(job);

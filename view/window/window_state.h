@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "render/opengl/gl_device.h"
 #include "view/draw/quad.h"
+#include "view/files/recent.h"
 #include "view/frame/frame.h"
 #include "view/gaze/gaze_source.h"
 #include "view/gaze/tracker_display.h"
@@ -70,6 +71,7 @@ struct gz_window {
 	struct gz_window_series *series;
 	struct gz_window_session *session;
 	struct gz_window_sources *sources;
+	struct gz_window_start *start;
 	struct gz_window_status *status;
 	struct gz_window_time *time;
 	struct gz_window_trail *trail;
@@ -237,11 +239,22 @@ bool gz_window_ask_layout(struct gz_window *window);
 /** Show a file as if it had been dropped on the window; nothing is asked. */
 void gz_window_open_file(struct gz_window *window, const char *path);
 
+/** Open the dialog that asks what to open. */
+void gz_window_ask_for_file(struct gz_window *window);
+
+/** The recent files. */
+const struct gz_recent *gz_window_recent(const struct gz_window *window);
+
 /** Save the scene, or ask for its name. */
 void gz_window_save_scene(struct gz_window *window);
 
 /** Whether the name of the scene is being asked for. */
 bool gz_window_is_saving(const struct gz_window *window);
+
+/* ---- start.c ---- */
+
+/** Whether the window has started a simulated viewer, whose gaze is on the window. */
+bool gz_window_is_simulating(const struct gz_window *window);
 
 /* ---- keys.c ---- */
 
