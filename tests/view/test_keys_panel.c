@@ -4,9 +4,8 @@
 #include "view/panels/file_dialogs.h"
 #include "view/panels/keys_panel.h"
 
-static const struct gz_keys_row row = {
-	"files", "Ctrl+O", "open a scene or a volume", "load import"
-};
+static const struct gz_keys_row row = { "files", "Ctrl+O", "open a scene or a volume",
+					"load import" };
 
 static void row_is_found_by_words_of_help_keys_group_and_others(void **state)
 {
