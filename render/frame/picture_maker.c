@@ -116,6 +116,22 @@ void gz_picture_maker_adopt(struct gz_picture_maker *maker, struct gz_picture_ma
 	gz_picture_maker_destroy(from);
 }
 
+bool gz_picture_maker_can_take_prepared(const struct gz_picture_maker *maker)
+{
+	const struct gz_technique_drawer *item = &maker->drawers.items[0];
+	return maker->drawers.count == 1 && item->drawer->ops->take_prepared &&
+	       item->technique->check("cpu", maker->drawers.backend_params, NULL) == GZ_OK;
+}
+
+void gz_picture_maker_take_prepared(struct gz_picture_maker *maker, struct gz_picture_maker **from)
+{
+	struct gz_drawer *drawer = maker->drawers.items[0].drawer;
+	if ((*from)->drawers.count == 1 &&
+	    (*from)->drawers.items[0].technique == maker->drawers.items[0].technique)
+		drawer->ops->take_prepared(drawer, (*from)->drawers.items[0].drawer);
+	gz_picture_maker_destroy(from);
+}
+
 /* Rays along a side of the picture; 0 if there would be none or too many. */
 static int rays_along(int side, double rate)
 {
@@ -264,7 +280,7 @@ static enum gz_result draw_or_take_over(struct making *making, struct gz_image *
 	struct gz_picture_maker *maker = making->maker;
 	const struct gz_shot shot = shot_of(making);
 	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
-	making->on_device = making->on_device && drawer->ops->keeps_on_device(drawer);
+	making->on_device = making->on_device && drawer->ops->keeps_on_device(drawer, &shot);
 	enum gz_result result = gz_drawers_draw(
 		&maker->drawers, &shot, making->on_device ? NULL : image, &making->cost.stats);
 	if (!cpu_may_take_over(maker, result) ||

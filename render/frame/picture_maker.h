@@ -66,6 +66,18 @@ enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
  */
 void gz_picture_maker_adopt(struct gz_picture_maker *maker, struct gz_picture_maker **from);
 
+/** Whether gz_picture_maker_take_prepared() spares a picture work: one technique draws, and cpu,
+ *  which runs here, prepares for it what its own backend would. */
+bool gz_picture_maker_can_take_prepared(const struct gz_picture_maker *maker);
+
+/**
+ * Go on with this maker's backend, and take what another one, of cpu, has prepared of the same
+ * objects. After gz_picture_maker_can_take_prepared().
+ *
+ * @param[in,out] from  destroyed and set to NULL
+ */
+void gz_picture_maker_take_prepared(struct gz_picture_maker *maker, struct gz_picture_maker **from);
+
 /** One picture to make. All pointers are borrowed until the call returns. */
 struct gz_picture_request {
 	const struct gz_camera *camera;

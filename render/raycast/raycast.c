@@ -214,8 +214,9 @@ static unsigned raycast_picture_texture(const struct gz_drawer *drawer)
 	return gz_raycaster_picture_texture(((const struct raycast_drawer *)drawer)->raycaster);
 }
 
-static bool raycast_keeps_on_device(const struct gz_drawer *drawer)
+static bool raycast_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
+	(void)shot;
 	return ((const struct raycast_drawer *)drawer)->raycaster->ops->picture_texture != NULL;
 }
 

@@ -78,8 +78,9 @@ static enum gz_result slices_draw(struct gz_drawer *drawer, const struct gz_shot
 	return GZ_OK;
 }
 
-static bool slices_keeps_on_device(const struct gz_drawer *drawer)
+static bool slices_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
+	(void)shot;
 	(void)drawer;
 	return true;
 }

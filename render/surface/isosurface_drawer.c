@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/raycast/shared/ray_params.h"
 #include "render/surface/cpu/surface_caster.h"
 #include "render/surface/gl/surface_raster.h"
 #include "render/surface/isosurface_technique.h"
@@ -67,17 +68,6 @@ static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
 	};
 }
 
-static enum gz_result isosurface_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
-				      struct gz_image *image, struct gz_frame_stats *out_stats)
-{
-	const struct isosurface_drawer *self = isosurface_read(drawer);
-	const struct gz_surface_shot surfaces = surface_shot_of(shot);
-	if (self->raster)
-		return gz_surface_raster_draw(self->raster, &surfaces, image, NULL, out_stats);
-	return image ? gz_surface_caster_draw(self->caster, &surfaces, image, NULL, out_stats)
-		     : GZ_ERR_INVAL;
-}
-
 /* Make the caster of a drawer whose backend is gl, and show it the objects. */
 static enum gz_result add_caster(struct isosurface_drawer *self)
 {
@@ -89,6 +79,28 @@ static enum gz_result add_caster(struct isosurface_drawer *self)
 	if (result != GZ_OK)
 		gz_surface_caster_destroy(&self->caster);
 	return result;
+}
+
+/* Whether the device draws a picture. Rays find surfaces in the voxels, and the processor casts
+ * them; without Embree all are triangles. */
+static bool draws_on_device(const struct isosurface_drawer *self, const struct gz_shot *shot)
+{
+	const struct gz_ray_params *rays = shot->settings;
+	return self->raster &&
+	       (rays->surface.source != GZ_SURFACE_VOXELS || !gz_surface_caster_present());
+}
+
+static enum gz_result isosurface_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
+				      struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct isosurface_drawer *self = isosurface_of(drawer);
+	const struct gz_surface_shot surfaces = surface_shot_of(shot);
+	if (draws_on_device(self, shot))
+		return gz_surface_raster_draw(self->raster, &surfaces, image, NULL, out_stats);
+	const enum gz_result result = image ? add_caster(self) : GZ_ERR_INVAL;
+	return result == GZ_OK
+		       ? gz_surface_caster_draw(self->caster, &surfaces, image, NULL, out_stats)
+		       : result;
 }
 
 static enum gz_result isosurface_cast_hits(struct gz_drawer *drawer, const struct gz_shot *shot,
@@ -112,9 +124,17 @@ static enum gz_result isosurface_shade(struct gz_drawer *drawer, const struct gz
 			       : result;
 }
 
-static bool isosurface_keeps_on_device(const struct gz_drawer *drawer)
+static bool isosurface_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
-	return isosurface_read(drawer)->raster != NULL;
+	return draws_on_device(isosurface_read(drawer), shot);
+}
+
+/* The tree of the other's meshes is lost, and goes with it. */
+static void isosurface_take_prepared(struct gz_drawer *drawer, struct gz_drawer *from)
+{
+	const struct isosurface_drawer *self = isosurface_of(drawer), *other = isosurface_of(from);
+	if (self->raster && other->caster)
+		gz_surface_raster_take(self->raster, gz_surface_caster_meshes(other->caster));
 }
 
 static unsigned isosurface_picture_texture(const struct gz_drawer *drawer)
@@ -149,6 +169,7 @@ static const struct gz_drawer_ops isosurface_ops = {
 	.draw = isosurface_draw,
 	.cast_hits = isosurface_cast_hits,
 	.shade = isosurface_shade,
+	.take_prepared = isosurface_take_prepared,
 	.keeps_on_device = isosurface_keeps_on_device,
 	.picture_texture = isosurface_picture_texture,
 	.backend = isosurface_backend,

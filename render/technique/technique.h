@@ -141,8 +141,11 @@ struct gz_drawer_ops {
 	 *  same shot, of which hits and shades must not be read. Fails as draw does. */
 	enum gz_result (*shade)(struct gz_drawer *drawer, const struct gz_shot *shot,
 				struct gz_shade *out_shade);
-	/** Whether pictures can stay on the device. If not, draw needs an image. */
-	bool (*keeps_on_device)(const struct gz_drawer *drawer);
+	/** Optional. Take from another drawer of the technique, which shows the same objects by
+	 *  another backend, what it has prepared and this one would prepare alike. */
+	void (*take_prepared)(struct gz_drawer *drawer, struct gz_drawer *from);
+	/** Whether the picture of a shot can stay on the device. If not, draw needs an image. */
+	bool (*keeps_on_device)(const struct gz_drawer *drawer, const struct gz_shot *shot);
 	/** OpenGL's name of the texture (RGBA8, row 0 on top) that holds the last picture drawn
 	 *  without an image; valid until the next one. 0: none. */
 	unsigned (*picture_texture)(const struct gz_drawer *drawer);

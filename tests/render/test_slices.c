@@ -335,7 +335,7 @@ static void picture_left_in_a_lent_context_equals_the_one_read_back(void **state
 	assert_true(viewport[0] == 1 && viewport[1] == 2 && viewport[2] == 3 && viewport[3] == 4);
 	assert_false(glIsEnabled(GL_BLEND) || glIsEnabled(GL_DEPTH_TEST) ||
 		     glIsEnabled(GL_SCISSOR_TEST));
-	assert_true(drawer->ops->keeps_on_device(drawer));
+	assert_true(drawer->ops->keeps_on_device(drawer, NULL));
 	glBindTexture(GL_TEXTURE_2D, drawer->ops->picture_texture(drawer));
 	glGetTexImage(GL_TEXTURE_2D, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 	assert_int_equal(glGetError(), GL_NO_ERROR);

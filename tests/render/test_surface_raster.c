@@ -571,7 +571,7 @@ static void picture_left_in_a_lent_context_equals_the_one_read_back(void **state
 	assert_int_equal(drawer->ops->draw(drawer, &shot, &stage.image, NULL), GZ_OK);
 	assert_int_equal(lent.egl->ops->make_current(lent.egl), GZ_OK);
 	glViewport(1, 2, 3, 4);
-	assert_true(drawer->ops->keeps_on_device(drawer));
+	assert_true(drawer->ops->keeps_on_device(drawer, &shot));
 	assert_int_equal(drawer->ops->draw(drawer, &shot, NULL, NULL), GZ_OK);
 	assert_int_equal(lent.egl->ops->make_current(lent.egl), GZ_OK);
 	glGetIntegerv(GL_VIEWPORT, viewport);
@@ -587,6 +587,50 @@ static void picture_left_in_a_lent_context_equals_the_one_read_back(void **state
 	assert_int_equal(drawer->ops->draw(drawer, &shot, &stage.image, NULL), GZ_ERR_NO_DEVICE);
 	gz_drawer_destroy(&drawer);
 	gz_gl_context_destroy(&lent.egl);
+	free_stage(&stage);
+	gz_volume_free(&volume);
+}
+
+/* Surfaces in the voxels are found by rays, and triangles that a caster has made are taken. */
+static void drawer_of_gl_finds_surfaces_in_voxels_and_takes_triangles(void **state)
+{
+	(void)state;
+	struct gz_volume volume = field_volume(field_ring, DIMS, EVEN, GZ_VOXEL_F32);
+	const struct gz_object object = { .technique = &gz_isosurface_technique,
+					  .id = 7,
+					  .volume = &volume };
+	struct stage stage = new_stage();
+	struct gz_image other = { 0 };
+	struct gz_drawer *gl = NULL, *cpu = NULL;
+	const struct gz_surface_shot surfaces = shot_of(&stage);
+	const struct gz_shot shot = { .camera = surfaces.camera,
+				      .settings = surfaces.rays,
+				      .plan = surfaces.plan };
+	struct gz_frame_stats stats;
+	assert_int_equal(gz_isosurface_technique.create("gl", NULL, NULL, &gl), GZ_OK);
+	assert_int_equal(gz_isosurface_technique.create("cpu", NULL, NULL, &cpu), GZ_OK);
+	assert_int_equal(gl->ops->show(gl, &object, 1), GZ_OK);
+	assert_int_equal(cpu->ops->show(cpu, &object, 1), GZ_OK);
+	stage.rays.surface.source = GZ_SURFACE_VOXELS;
+	assert_false(gl->ops->keeps_on_device(gl, &shot));
+	assert_int_equal(gl->ops->draw(gl, &shot, &stage.image, NULL), GZ_OK);
+	assert_int_equal(cpu->ops->draw(cpu, &shot, &other, NULL), GZ_OK);
+	assert_memory_equal(other.pixels, stage.image.pixels, 4 * PIXELS);
+	stage.rays.surface.source = GZ_SURFACE_TRIANGLES;
+	assert_true(gl->ops->keeps_on_device(gl, &shot));
+	assert_int_equal(gl->ops->draw(gl, &shot, &other, NULL), GZ_OK);
+	stage.rays.surface.isovalue -= 0.25;
+	assert_int_equal(gl->ops->draw(gl, &shot, &stage.image, NULL), GZ_OK);
+	stage.rays.surface.isovalue += 0.25;
+	assert_int_equal(cpu->ops->draw(cpu, &shot, &stage.image, NULL), GZ_OK);
+	memset(volume.voxels, 0, gz_volume_bytes(&volume)); /* triangles made anew would differ */
+	gl->ops->take_prepared(gl, cpu);
+	gz_drawer_destroy(&cpu);
+	assert_int_equal(gl->ops->draw(gl, &shot, &stage.image, &stats), GZ_OK);
+	assert_memory_equal(other.pixels, stage.image.pixels, 4 * PIXELS);
+	assert_true(stats.prepare_ms > 0); /* the upload */
+	gz_drawer_destroy(&gl);
+	gz_image_free(&other);
 	free_stage(&stage);
 	gz_volume_free(&volume);
 }
@@ -710,6 +754,7 @@ TEST_SUITE(surface_raster)
 		cmocka_unit_test(meshes_beyond_the_devices_memory_are_refused_with_one_line),
 		cmocka_unit_test(meshes_of_more_elements_than_corners_can_be_counted_are_refused),
 		cmocka_unit_test(picture_left_in_a_lent_context_equals_the_one_read_back),
+		cmocka_unit_test(drawer_of_gl_finds_surfaces_in_voxels_and_takes_triangles),
 		cmocka_unit_test(drawer_of_gl_casts_the_hits_of_the_one_of_cpu),
 		cmocka_unit_test(points_on_rays_are_drawn_at_their_pixels),
 		cmocka_unit_test(unknown_backends_are_refused_with_one_line),

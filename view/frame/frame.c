@@ -543,8 +543,10 @@ enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
 				     const struct gz_scene_settings *settings,
 				     void (*finished)(void *user))
 {
-	if (!maker->pictures || strcmp(gz_frame_backend(maker), cpu_name) != 0 ||
-	    settings->technique != maker->scene.settings.technique)
+	if (!maker->pictures || settings->technique != maker->scene.settings.technique)
+		return GZ_FRAME_CANNOT_WAIT;
+	const bool by_cpu = strcmp(gz_frame_backend(maker), cpu_name) == 0;
+	if (!by_cpu && !gz_picture_maker_can_take_prepared(maker->pictures))
 		return GZ_FRAME_CANNOT_WAIT;
 	if (maker->spare && !gz_spare_finished(maker->spare))
 		return GZ_FRAME_PREPARING;
@@ -556,7 +558,10 @@ enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
 	struct gz_picture_maker *made = NULL;
 	if (gz_spare_take(&maker->spare, &made) != GZ_OK)
 		return GZ_FRAME_CANNOT_WAIT;
-	gz_picture_maker_adopt(maker->pictures, &made);
+	if (by_cpu)
+		gz_picture_maker_adopt(maker->pictures, &made);
+	else
+		gz_picture_maker_take_prepared(maker->pictures, &made);
 	return GZ_FRAME_READY;
 }
 

@@ -195,7 +195,7 @@ enum gz_frame_ready {
 
 /**
  * Make triangles of the settings' isovalue ready on a thread of its own, while frames with
- * GZ_SURFACE_VOXELS go on. Only where the cpu backend draws.
+ * GZ_SURFACE_VOXELS go on.
  *
  * @param finished  called on the thread; may be NULL
  */

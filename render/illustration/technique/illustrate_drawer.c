@@ -73,8 +73,9 @@ static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_
 	return gz_illustrate_caster_draw(self->caster, &illustrated, image, NULL, out_stats);
 }
 
-static bool illustrate_keeps_on_device(const struct gz_drawer *drawer)
+static bool illustrate_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
+	(void)shot;
 	(void)drawer;
 	return false;
 }

@@ -49,6 +49,12 @@ enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
 	return GZ_ERR_UNSUPPORTED;
 }
 
+struct gz_surface_meshes *gz_surface_caster_meshes(struct gz_surface_caster *caster)
+{
+	(void)caster;
+	return NULL; /* nobody has a caster */
+}
+
 struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster)
 {
 	(void)caster;

@@ -302,6 +302,11 @@ static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
 	return GZ_OK;
 }
 
+struct gz_surface_meshes *gz_surface_caster_meshes(struct gz_surface_caster *caster)
+{
+	return &caster->meshes;
+}
+
 struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster)
 {
 	return (struct gz_surface_size) {

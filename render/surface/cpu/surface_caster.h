@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/picture/image.h"
+#include "render/surface/shared/surface_meshes.h"
 #include "render/surface/shared/surface_shot.h"
 #include "render/technique/technique.h"
 
@@ -89,6 +90,10 @@ struct gz_surface_size {
 	size_t mesh_bytes; /**< of meshes that the caster has made */
 	size_t tree_bytes;
 };
+
+/** The meshes that it shows, for gz_surface_meshes_take(). The caster makes those anew that are
+ *  taken. */
+struct gz_surface_meshes *gz_surface_caster_meshes(struct gz_surface_caster *caster);
 
 /** See struct gz_surface_size. */
 struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *caster);

@@ -382,6 +382,11 @@ static enum gz_result prepare_outputs(const struct gz_plan *plan, struct gz_imag
 	return result;
 }
 
+void gz_surface_raster_take(struct gz_surface_raster *raster, struct gz_surface_meshes *from)
+{
+	gz_surface_meshes_take(&raster->surfaces, from);
+}
+
 enum gz_result gz_surface_raster_draw(struct gz_surface_raster *raster,
 				      const struct gz_surface_shot *shot, struct gz_image *image,
 				      const struct gz_surface_planes *planes,

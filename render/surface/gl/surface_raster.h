@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/picture/image.h"
+#include "render/surface/shared/surface_meshes.h"
 #include "render/surface/shared/surface_shot.h"
 #include "render/technique/technique.h"
 
@@ -36,11 +37,14 @@ enum gz_result gz_surface_raster_create(const struct gz_backend_params *params,
 enum gz_result gz_surface_raster_show(struct gz_surface_raster *raster,
 				      const struct gz_object *objects, size_t count);
 
+/** Take the meshes that a caster of rays has made of the same data: gz_surface_meshes_take(). */
+void gz_surface_raster_take(struct gz_surface_raster *raster, struct gz_surface_meshes *from);
+
 /**
  * Draw a picture of the plan's size and write every pixel. Makes and uploads the surfaces first if
  * the isovalue or the objects have changed.
  *
- * @param shot       without hits; volumes are shown as triangles, whatever its surface.source says
+ * @param shot       without hits; volumes are shown as triangles
  * @param image      NULL: the picture stays on the device, see gz_surface_raster_picture()
  * @param planes     NULL: only colours. Between points a plane takes the nearest one
  * @param out_stats  may be NULL; its prepare_ms is the time for surfaces and their upload

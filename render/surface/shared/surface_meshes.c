@@ -145,6 +145,30 @@ void gz_surface_meshes_without_volumes(struct gz_surface_meshes *meshes, bool wi
 	meshes->without_volumes = without;
 }
 
+static bool made_of_same_data(const struct gz_surface_item *item,
+			      const struct gz_surface_item *from)
+{
+	return from->current && !from->object.mesh && !item->object.mesh &&
+	       from->object.volume == item->object.volume &&
+	       from->object.data_revision == item->object.data_revision;
+}
+
+void gz_surface_meshes_take(struct gz_surface_meshes *meshes, struct gz_surface_meshes *from)
+{
+	for (size_t i = 0; i < meshes->count && i < from->count; i++) {
+		struct gz_surface_item *item = &meshes->items[i], *other = &from->items[i];
+		if (!made_of_same_data(item, other))
+			continue;
+		gz_mesh_free(&item->made);
+		item->made = other->made;
+		item->isovalue = other->isovalue;
+		item->current = true;
+		other->made = (struct gz_mesh) { 0 };
+		other->current = false;
+		meshes->listed = from->listed = false;
+	}
+}
+
 size_t gz_surface_meshes_bytes(const struct gz_surface_meshes *meshes)
 {
 	size_t bytes = 0;

@@ -65,6 +65,9 @@ enum gz_result gz_surface_meshes_make(struct gz_surface_meshes *meshes, double i
  * Those that were made are kept. */
 void gz_surface_meshes_without_volumes(struct gz_surface_meshes *meshes, bool without);
 
+/** Take the meshes that others have made of the same data. */
+void gz_surface_meshes_take(struct gz_surface_meshes *meshes, struct gz_surface_meshes *from);
+
 /** Bytes of the meshes that were made. */
 size_t gz_surface_meshes_bytes(const struct gz_surface_meshes *meshes);
 
