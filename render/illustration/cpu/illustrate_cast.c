@@ -38,8 +38,8 @@ static bool clip_ray(const struct gz_illustrate_cast *cast, struct RTCRay16 *ray
 	for (int axis = 0; axis < 3; axis++) {
 		/* Along a face nothing divides by 0: such a ray is in or out as a whole. */
 		const float along = fabsf(direction[axis]) > 1e-20F ? direction[axis] : 1e-20F;
-		const float a = (cast->clip_least[axis] - origin[axis]) / along;
-		const float b = (cast->clip_greatest[axis] - origin[axis]) / along;
+		const float a = (cast->frame->clip_least[axis] - origin[axis]) / along;
+		const float b = (cast->frame->clip_greatest[axis] - origin[axis]) / along;
 		ray->tnear[i] = fmaxf(ray->tnear[i], fminf(a, b));
 		ray->tfar[i] = fminf(ray->tfar[i], fmaxf(a, b));
 	}
@@ -73,7 +73,7 @@ static void aim_packet(const struct gz_illustrate_cast *cast, const struct gz_il
 		packet->hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
 		packet->hit.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
 		packet->valid[i] = tile->active >> i & 1 ? -1 : 0;
-		if (cast->clipped && !clip_ray(cast, ray, i))
+		if (cast->frame->clipped && !clip_ray(cast, ray, i))
 			packet->valid[i] = 0;
 		packet->ends[i] = ray->tfar[i];
 	}
@@ -269,7 +269,7 @@ static void shade_lanes(const struct gz_illustrate_cast *cast,
 	if (weights->curvature > 0)
 		gz_shading_curvature_magnitude(lanes->greatest, lanes->least, RAYS, 1, values[4]);
 	if (weights->plain_light > 0)
-		gz_shading_plain_light(&normals[0], RAYS, cast->lamp, values[5]);
+		gz_shading_plain_light(&normals[0], RAYS, cast->frame->lamp, values[5]);
 	gz_shading_mean(parameters, PARAMETERS_MAX, RAYS, out_tone);
 	for (int i = 0; i < RAYS && !(sum > 0); i++)
 		out_tone[i] = weights->flat;
@@ -305,7 +305,7 @@ static void shade_by_looks(const struct gz_illustrate_cast *cast, const struct s
 		const unsigned look = lanes->looks[first];
 		if (done[first])
 			continue;
-		shade_lanes(cast, &cast->looks[look], lanes, tone);
+		shade_lanes(cast, &cast->frame->looks[look], lanes, tone);
 		for (int i = first; i < RAYS; i++)
 			if (lanes->looks[i] == look) {
 				out_tone[i] = tone[i];

@@ -12,38 +12,14 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/data/clip_box.h"
-#include "render/illustration/illustration_look.h"
-#include "render/picture/camera.h"
+#include "render/illustration/shared/illustrate_shot.h"
 #include "render/picture/image.h"
-#include "render/picture/plane.h"
-#include "render/plan/plan.h"
 #include "render/technique/technique.h"
-
-/** Most number of an object. Chosen: a scene has 32, an atlas some hundreds. */
-#define GZ_ILLUSTRATE_ID_MAX 65535
 
 /** Surfaces, what shading knows of them, and the threads that cast. One thread at a time may use
  * it.
  */
 struct gz_illustrate_caster;
-
-/** One picture to draw. All pointers are borrowed. */
-struct gz_illustrate_shot {
-	const struct gz_camera *camera;
-	const struct gz_plan *plan;
-	const struct gz_illustration_look *look; /**< with its template found */
-	const struct gz_clip_box *clip;          /**< only what lies in it shows; NULL: all */
-	double isovalue;                         /**< of objects that are volumes */
-	uint32_t chosen_id; /**< object from which distances count; 0: none. Used if
-				 settings->object_distance is above 0 */
-};
-
-/** Planes of a picture, for who draws on; each may be NULL. */
-struct gz_illustrate_planes {
-	struct gz_plane *depth; /**< GZ_PLANE_VALUE, along the ray, mm; INFINITY: nothing */
-	struct gz_plane *ids;   /**< GZ_PLANE_ID */
-};
 
 /** Whether there is one in this build: it needs Embree. If not, gz_illustrate_caster_create() says
  *  so and fails with GZ_ERR_UNSUPPORTED. */
@@ -68,18 +44,7 @@ enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *param
 					   const struct gz_log *log,
 					   struct gz_illustrate_caster **out_caster);
 
-/**
- * Show these objects from the next picture on. Surfaces and what shading knows of them are made
- * when that picture is drawn.
- *
- * What is known of meshes that stay is kept: another style costs nothing.
- *
- * @param objects  as for gz_surface_caster_show(); ids are 1 to GZ_ILLUSTRATE_ID_MAX. Templates are
- *                 borrowed, too
- * @retval GZ_ERR_INVAL        no objects, or an id or style out of range
- * @retval GZ_ERR_UNSUPPORTED  a volume of bricks, or an object without a volume; logged
- * @retval GZ_ERR_NO_MEM       out of memory
- */
+/** gz_illustrate_scene_show(). */
 enum gz_result gz_illustrate_caster_show(struct gz_illustrate_caster *caster,
 					 const struct gz_object *objects, size_t count);
 

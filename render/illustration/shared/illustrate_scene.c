@@ -1,4 +1,4 @@
-#include "render/illustration/cpu/illustrate_scene.h"
+#include "render/illustration/shared/illustrate_scene.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -271,7 +271,7 @@ static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t ind
 	return result;
 }
 
-/* Make the vertices that are not known, and the tree if any of them is new. */
+/* Make the vertices that are not known, and the ball if any of them is new. */
 static enum gz_result prepare_items(struct gz_illustrate_scene *scene, struct gz_workers *workers)
 {
 	enum gz_result result = GZ_OK;
@@ -285,11 +285,9 @@ static enum gz_result prepare_items(struct gz_illustrate_scene *scene, struct gz
 	if (result != GZ_OK || scene->built)
 		return result;
 	scene->measured_id = 0;
-	result = gz_surface_tree_build(&scene->tree, scene->meshes.shown, scene->count);
-	if (result != GZ_OK)
-		return result;
 	bound_scene(scene);
 	scene->made++;
+	scene->meshes_made++;
 	scene->built = true;
 	return GZ_OK;
 }
@@ -342,16 +340,28 @@ static enum gz_result measure_scene(struct gz_illustrate_scene *scene, uint32_t 
 	return result;
 }
 
-enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene, double isovalue,
-					   uint32_t chosen_id, struct gz_workers *workers)
+uint32_t gz_illustrate_shot_measured(const struct gz_illustrate_shot *shot)
+{
+	struct gz_shading_settings settings;
+	gz_illustration_look_resolve(shot->look, NULL, &settings);
+	return settings.object_distance > 0 ? shot->chosen_id : 0;
+}
+
+enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene,
+					   const struct gz_illustrate_shot *shot,
+					   struct gz_workers *workers)
 {
 	bool new_meshes = false;
+	if (scene->count < 1 || shot->plan->layer_count < 1 ||
+	    !gz_illustration_look_valid(shot->look))
+		return GZ_ERR_INVAL;
 	enum gz_result result =
-		gz_surface_meshes_make(&scene->meshes, isovalue, workers, &new_meshes);
+		gz_surface_meshes_make(&scene->meshes, shot->isovalue, workers, &new_meshes);
 	if (result == GZ_OK)
 		result = prepare_items(scene, workers);
 	if (result != GZ_OK)
 		return result;
+	const uint32_t chosen_id = gz_illustrate_shot_measured(shot);
 	if (chosen_id > 0 && scene->measured_id != chosen_id)
 		result = measure_scene(scene, chosen_id, workers);
 	list_illustrated(scene);
@@ -365,5 +375,4 @@ void gz_illustrate_scene_free(struct gz_illustrate_scene *scene)
 	scene->items = NULL;
 	scene->count = 0;
 	gz_surface_meshes_free(&scene->meshes);
-	gz_surface_tree_close(&scene->tree);
 }
