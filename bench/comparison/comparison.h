@@ -45,7 +45,7 @@ struct gz_comparison_frame {
 
 /** A picture's reference. */
 enum gz_comparison_reference {
-	GZ_REFERENCE_NONE, /**< not measured */
+	GZ_REFERENCE_NONE, /**< not measured, or there is nothing that it should look like */
 	/** The converged ray cast of the scene's transfer function with the same effect. */
 	GZ_REFERENCE_VOLUME,
 	/** The converged ray cast of matter that is opaque from the isovalue on: what an opaque

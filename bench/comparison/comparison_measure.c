@@ -152,11 +152,11 @@ struct comparing {
 };
 
 /* Surfaces are opaque matter, lit by its gradient. Matter has neither hard shadows nor glass: for
- * these, rays find the surface in the voxels. */
+ * these, rays find the surface in the voxels. An illustration is to look like none of it. */
 static enum gz_comparison_reference reference_of(const struct gz_comparison_job *job,
 						 const struct gz_comparison_series *series)
 {
-	if (!job->request->errors)
+	if (!job->request->errors || series->technique->stylised)
 		return GZ_REFERENCE_NONE;
 	if (series->technique->sharing == GZ_SHARES_AS_OPAQUE)
 		return series->rays.surface.shadows ||

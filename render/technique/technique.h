@@ -180,6 +180,7 @@ struct gz_technique {
 	size_t objects_max;          /**< most objects of one picture */
 	const char *const *backends; /**< names, NULL-terminated, best first on a graphics device */
 	bool backends_agree;         /**< all of them draw the same picture, but for rounding */
+	bool stylised;               /**< draws as an illustrator does: not how matter looks */
 	enum gz_sharing sharing;     /**< those that share have settings of one struct */
 	/**
 	 * Check a backend's name and parameters before there is anything to show. Logged. Returns

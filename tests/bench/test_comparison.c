@@ -172,6 +172,10 @@ static void check_rows(const struct gz_comparison *comparison)
 	assert_int_equal(hard->reference, GZ_REFERENCE_VOXELS);
 	if (!(hard->converged.psnr_db > 24))
 		fail_msg("%g dB", hard->converged.psnr_db);
+	const struct gz_comparison_row *drawing = find_row(comparison, "illustrate", "none", 1);
+	assert_non_null(drawing);
+	assert_int_equal(drawing->reference, GZ_REFERENCE_NONE);
+	assert_true(isnan(drawing->converged.psnr_db) && drawing->standard.psnr_db > 10);
 }
 
 static void comparison_measures_each_technique_and_writes_its_folder(void **state)

@@ -26,6 +26,7 @@ static const char *const illustrate_backends[] = { "cpu", NULL };
 const struct gz_technique gz_illustrate_technique = {
 	.name = "illustrate",
 	.help = "shades surfaces so that form and place are easy to see",
+	.stylised = true,
 	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_LABELS | GZ_OBJECT_MESH | GZ_OBJECT_PARTICLES,
 	.objects_max = SURFACES_MAX,
 	.backends = illustrate_backends,
