@@ -20,8 +20,9 @@
 
 #define GZ_LOG_MODULE "isosurface"
 
-/* Tiles that a thread takes at a time, as in the ray caster. */
-enum { TILES_A_PART = 16 };
+/* Tiles that a thread takes at a time: neighbours share branches of the tree, which stay in the
+ * thread's cache. Measured: 64 take 4 % less time than 16, and 256 no less than 64. */
+enum { TILES_A_PART = 64 };
 
 /* Rays lie close together if their distance at the centre of what is shown is at most this share of
  * a triangle's edge. Measured: the cranium's triangles have edges of 1 mm, and it is faster to

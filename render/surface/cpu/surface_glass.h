@@ -174,7 +174,8 @@ SIMD void begin_glass(int first, struct glass *glass)
 		vf_store(glass->light[i] + first, vf_set(0));
 		vf_store(glass->weight[i] + first, vf_set(1));
 	}
-	vi_store((uint32_t *)glass->inside + first, vi_set(0));
+	for (int i = first; i < first + SIMD_LANES; i++)
+		glass->inside[i] = 0;
 }
 
 /* Note the depth and the object that rays have met first. */
