@@ -59,8 +59,8 @@ enum gz_result gz_picture_maker_show(struct gz_picture_maker *maker,
 				     const struct gz_object *objects, size_t count);
 
 /**
- * Go on with what another maker has made ready: what it shows, and how it draws that. It must show
- * the same list of objects as @p maker.
+ * Go on with what another maker has made ready: what it shows, and how it draws that. What
+ * @p maker showed is let go of.
  *
  * @param[in,out] from  destroyed and set to NULL
  */

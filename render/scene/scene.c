@@ -377,22 +377,22 @@ static enum gz_result make_empty_space(const struct scene_loader *loader, struct
 	return GZ_OK;
 }
 
-enum gz_result gz_scene_remake_labels(struct gz_scene *scene, const char *name,
-				      const struct gz_label_look *look, const struct gz_log *log,
-				      struct gz_label_surfaces **out_before)
+enum gz_result gz_scene_make_labels(const struct gz_scene_label_request *request,
+				    const struct gz_log *log, struct gz_label_surfaces **out_labels)
 {
-	struct gz_scene made = { .settings = scene->settings };
-	const struct scene_loader loader = { .name = name, .log = log, .settings = &made.settings };
-	made.settings.labels = *look;
+	struct gz_scene made = { .settings = *request->settings };
+	const struct scene_loader loader = { .name = request->name,
+					     .log = log,
+					     .settings = &made.settings };
+	double centre[3];
 	const enum gz_result result = load_labels(&loader, &made);
 	if (result != GZ_OK) {
-		gz_scene_free_labels(scene, made.labels);
+		gz_scene_free_labels(&made, made.labels);
 		return result;
 	}
-	each_mesh(&made, move_to_centre, scene->centre);
-	*out_before = scene->labels;
-	scene->labels = made.labels;
-	scene->settings.labels = *look;
+	memcpy(centre, request->centre, sizeof centre);
+	each_mesh(&made, move_to_centre, centre);
+	*out_labels = made.labels;
 	return GZ_OK;
 }
 

@@ -174,18 +174,24 @@ size_t gz_scene_list_objects(const struct gz_scene *scene, struct gz_object *out
  *  plus 2 and the place of that object among the settings'. So the lowest byte tells the object. */
 uint32_t gz_scene_label_id(size_t object, size_t label);
 
+/** Which labels gz_scene_make_labels() makes. All pointers are borrowed. */
+struct gz_scene_label_request {
+	const char *name; /**< path beside which the scene's files are searched first */
+	const struct gz_scene_settings *settings; /**< of the scene, with the labels' look */
+	const double *centre;                     /**< of the scene, three numbers */
+};
+
 /**
- * Make the surfaces of a scene's labels again, with another look. The world stays as it is.
+ * Make the surfaces of a loaded scene's labels again, with another look. The scene stays as it is,
+ * so that this can run beside threads that use it.
  *
- * @param name  path beside which the scene's files are searched first
- * @param[in,out] scene  loaded; changed on GZ_OK
- * @param[out] out_before  the surfaces until now, written on GZ_OK; the caller frees them with
- *                         gz_scene_free_labels(). NULL: the scene has no labels
+ * @param[out] out_labels  in place of the scene's labels; written on GZ_OK; the caller frees them
+ *                         with gz_scene_free_labels(). NULL: the scene has no labels
  * @return what gz_scene_load() returns; logged
  */
-enum gz_result gz_scene_remake_labels(struct gz_scene *scene, const char *name,
-				      const struct gz_label_look *look, const struct gz_log *log,
-				      struct gz_label_surfaces **out_before);
+enum gz_result gz_scene_make_labels(const struct gz_scene_label_request *request,
+				    const struct gz_log *log,
+				    struct gz_label_surfaces **out_labels);
 
 /** Free the surfaces of the labels of each of a scene's objects. Accepts NULL. */
 void gz_scene_free_labels(const struct gz_scene *scene, struct gz_label_surfaces *labels);

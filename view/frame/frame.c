@@ -11,6 +11,7 @@
 #include "render/plan/method.h"
 #include "render/scene/scene_open.h"
 #include "render/scene/techniques.h"
+#include "view/frame/label_change.h"
 #include "view/frame/spare.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -32,6 +33,15 @@ struct time_points {
 	struct gz_volume *taken; /* ready to be shown; NULL: none */
 };
 
+/* Surfaces of labels with another look, which are made beside the frames: first the surfaces, then
+ * what draws them. */
+struct next_labels {
+	struct gz_label_change *change; /* NULL: the surfaces are not in the making */
+	struct gz_label_surfaces *made; /* NULL: there are none */
+	struct gz_label_look look;      /* of those */
+	struct gz_spare *spare;         /* NULL: it does not draw them */
+};
+
 struct gz_frame_maker {
 	const struct gz_log *log;
 	struct gz_scene scene;
@@ -41,7 +51,8 @@ struct gz_frame_maker {
 	struct gz_picture_maker *pictures; /* NULL: not started */
 	struct gz_backend_params params;   /* of pictures */
 	struct gz_spare *spare;            /* NULL: none is made */
-	uint64_t transfer_revision;        /* of the scene's transfer function */
+	struct next_labels labels;
+	uint64_t transfer_revision; /* of the scene's transfer function */
 	struct gz_attention attention;
 	struct gz_gaze_reading reading; /* the last one passed to the attention */
 	struct gz_focus focus;          /* the attention's answer */
@@ -169,6 +180,13 @@ static size_t list_scene_objects(const struct gz_frame_maker *maker,
 	return count;
 }
 
+/* Stop making anything ready for what is shown: it is about to change. */
+static void drop_spares(struct gz_frame_maker *maker)
+{
+	gz_spare_drop(&maker->spare);
+	gz_spare_drop(&maker->labels.spare);
+}
+
 static enum gz_result show_scene_objects(struct gz_frame_maker *maker)
 {
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
@@ -255,7 +273,7 @@ bool gz_frame_cpu_suffices(const struct gz_frame_maker *maker)
 
 void gz_frame_maker_stop(struct gz_frame_maker *maker)
 {
-	gz_spare_drop(&maker->spare);
+	drop_spares(maker);
 	gz_picture_maker_destroy(&maker->pictures);
 }
 
@@ -272,37 +290,13 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer)
 {
-	gz_spare_drop(&maker->spare);
+	drop_spares(maker);
 	maker->scene.transfer = *transfer;
 	maker->transfer_revision++;
 	maker->any_made = false;
 	const enum gz_result r = show_scene_objects(maker);
 	if (r != GZ_OK)
 		gz_err(maker->log, "cannot use the transfer function: %s", gz_result_text(r));
-	return r;
-}
-
-enum gz_result gz_frame_set_labels(struct gz_frame_maker *maker, const struct gz_label_look *look)
-{
-	struct gz_scene *scene = &maker->scene;
-	const struct gz_label_look shown = scene->settings.labels;
-	struct gz_label_surfaces *before = NULL;
-	gz_spare_drop(&maker->spare);
-	enum gz_result r = gz_scene_remake_labels(scene, maker->path, look, maker->log, &before);
-	if (r != GZ_OK)
-		return r;
-	maker->any_made = false;
-	r = maker->pictures ? show_scene_objects(maker) : GZ_OK;
-	if (r != GZ_OK) {
-		struct gz_label_surfaces *const refused = scene->labels;
-		gz_err(maker->log, "cannot show the labels: %s", gz_result_text(r));
-		scene->labels = before;
-		scene->settings.labels = shown;
-		before = refused;
-		(void)show_scene_objects(maker);
-	}
-	/* The renderer has let go of them. */
-	gz_scene_free_labels(scene, before);
 	return r;
 }
 
@@ -437,7 +431,7 @@ enum gz_result gz_frame_show_taken(struct gz_frame_maker *maker)
 {
 	if (!maker->time_points || !maker->time_points->taken)
 		return GZ_ERR_INVAL;
-	gz_spare_drop(&maker->spare);
+	drop_spares(maker);
 	exchange_time_points(maker);
 	maker->any_made = false;
 	enum gz_result r = maker->pictures ? show_scene_objects(maker) : GZ_OK;
@@ -521,9 +515,10 @@ bool gz_frame_settling(const struct gz_frame_maker *maker)
 	return gz_picture_maker_settling(maker->pictures);
 }
 
-static enum gz_frame_ready start_spare(struct gz_frame_maker *maker,
-				       const struct gz_scene_settings *settings,
-				       void (*finished)(void *user))
+/* Make pictures of what the scene shows ready on a thread. */
+static enum gz_result start_spare(const struct gz_frame_maker *maker,
+				  const struct gz_scene_settings *settings,
+				  void (*finished)(void *user), struct gz_spare **out_spare)
 {
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const size_t count = list_scene_objects(maker, objects);
@@ -535,8 +530,12 @@ static enum gz_frame_ready start_spare(struct gz_frame_maker *maker,
 		.finished = finished,
 		.log = maker->log,
 	};
-	return gz_spare_start(&request, &maker->spare) == GZ_OK ? GZ_FRAME_PREPARING
-								: GZ_FRAME_CANNOT_WAIT;
+	return gz_spare_start(&request, out_spare);
+}
+
+static bool draws_by_cpu(const struct gz_frame_maker *maker)
+{
+	return strcmp(gz_frame_backend(maker), cpu_name) == 0;
 }
 
 enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
@@ -545,7 +544,7 @@ enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
 {
 	if (!maker->pictures || settings->technique != maker->scene.settings.technique)
 		return GZ_FRAME_CANNOT_WAIT;
-	const bool by_cpu = strcmp(gz_frame_backend(maker), cpu_name) == 0;
+	const bool by_cpu = draws_by_cpu(maker);
 	if (!by_cpu && !gz_picture_maker_can_take_prepared(maker->pictures))
 		return GZ_FRAME_CANNOT_WAIT;
 	if (maker->spare && !gz_spare_finished(maker->spare))
@@ -554,7 +553,9 @@ enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
 	if (maker->spare && !suits)
 		gz_spare_drop(&maker->spare);
 	if (!suits)
-		return start_spare(maker, settings, finished);
+		return start_spare(maker, settings, finished, &maker->spare) == GZ_OK
+			       ? GZ_FRAME_PREPARING
+			       : GZ_FRAME_CANNOT_WAIT;
 	struct gz_picture_maker *made = NULL;
 	if (gz_spare_take(&maker->spare, &made) != GZ_OK)
 		return GZ_FRAME_CANNOT_WAIT;
@@ -563,6 +564,134 @@ enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
 	else
 		gz_picture_maker_take_prepared(maker->pictures, &made);
 	return GZ_FRAME_READY;
+}
+
+/* ---- labels with another look ---- */
+
+/* Drop surfaces that were made and not shown. */
+static void drop_made_labels(struct gz_frame_maker *maker)
+{
+	gz_spare_drop(&maker->labels.spare);
+	gz_scene_free_labels(&maker->scene, maker->labels.made);
+	maker->labels.made = NULL;
+}
+
+void gz_frame_drop_labels(struct gz_frame_maker *maker)
+{
+	struct next_labels *next = &maker->labels;
+	drop_made_labels(maker);
+	if (next->change && gz_label_change_take(&next->change, &next->made) == GZ_OK)
+		drop_made_labels(maker);
+}
+
+bool gz_frame_making_labels(const struct gz_frame_maker *maker)
+{
+	const struct next_labels *next = &maker->labels;
+	return (next->change && !gz_label_change_finished(next->change)) ||
+	       (next->spare && !gz_spare_finished(next->spare));
+}
+
+/* Make the surfaces. */
+static enum gz_frame_ready make_labels(struct gz_frame_maker *maker,
+				       const struct gz_scene_settings *settings,
+				       void (*finished)(void *user))
+{
+	struct next_labels *next = &maker->labels;
+	if (next->made && gz_label_look_same(&next->look, &settings->labels))
+		return GZ_FRAME_READY;
+	drop_made_labels(maker);
+	if (next->change && !gz_label_change_finished(next->change))
+		return GZ_FRAME_PREPARING;
+	if (next->change) {
+		next->look = *gz_label_change_look(next->change);
+		const bool asked_for = gz_label_look_same(&next->look, &settings->labels);
+		const enum gz_result r = gz_label_change_take(&next->change, &next->made);
+		if (asked_for)
+			return r == GZ_OK ? GZ_FRAME_READY : GZ_FRAME_CANNOT_WAIT;
+		drop_made_labels(maker);
+	}
+	const struct gz_scene_label_request request = {
+		.name = maker->path,
+		.settings = settings,
+		.centre = maker->scene.centre,
+	};
+	const enum gz_result r =
+		gz_label_change_start(&request, finished, maker->log, &next->change);
+	if (r == GZ_OK)
+		return GZ_FRAME_PREPARING;
+	gz_err(maker->log, "cannot show the labels: %s", gz_result_text(r));
+	return GZ_FRAME_CANNOT_WAIT;
+}
+
+/* Exchange the surfaces shown and those made. */
+static void exchange_labels(struct gz_frame_maker *maker)
+{
+	struct gz_scene *scene = &maker->scene;
+	struct gz_label_surfaces *const shown = scene->labels;
+	const struct gz_label_look look = scene->settings.labels;
+	scene->labels = maker->labels.made;
+	scene->settings.labels = maker->labels.look;
+	maker->labels.made = shown;
+	maker->labels.look = look;
+}
+
+/* Make ready what draws the surfaces. gl does not prepare them: it uploads them. */
+static enum gz_frame_ready make_label_drawer(struct gz_frame_maker *maker,
+					     const struct gz_scene_settings *settings,
+					     void (*finished)(void *user))
+{
+	struct gz_spare **spare = &maker->labels.spare;
+	if (!maker->pictures || !draws_by_cpu(maker))
+		return GZ_FRAME_READY;
+	if (*spare && !gz_spare_finished(*spare))
+		return GZ_FRAME_PREPARING;
+	if (*spare && gz_spare_suits(*spare, settings))
+		return GZ_FRAME_READY;
+	gz_spare_drop(spare);
+	exchange_labels(maker);
+	const enum gz_result r = start_spare(maker, settings, finished, spare);
+	exchange_labels(maker);
+	/* Without one, the next frame prepares what it needs. */
+	return r == GZ_OK ? GZ_FRAME_PREPARING : GZ_FRAME_READY;
+}
+
+enum gz_frame_ready gz_frame_prepare_labels(struct gz_frame_maker *maker,
+					    const struct gz_scene_settings *settings,
+					    void (*finished)(void *user))
+{
+	const enum gz_frame_ready made = make_labels(maker, settings, finished);
+	return made == GZ_FRAME_READY ? make_label_drawer(maker, settings, finished) : made;
+}
+
+/* Draw what the scene has now, by the spare if there is one. */
+static enum gz_result show_made_labels(struct gz_frame_maker *maker)
+{
+	struct gz_picture_maker *ready = NULL;
+	if (!maker->pictures)
+		return GZ_OK;
+	if (maker->labels.spare && gz_spare_take(&maker->labels.spare, &ready) == GZ_OK) {
+		gz_picture_maker_adopt(maker->pictures, &ready);
+		return GZ_OK;
+	}
+	return show_scene_objects(maker);
+}
+
+enum gz_result gz_frame_show_labels(struct gz_frame_maker *maker)
+{
+	if (!maker->labels.made)
+		return GZ_ERR_INVAL;
+	gz_spare_drop(&maker->spare);
+	exchange_labels(maker);
+	maker->any_made = false;
+	const enum gz_result r = show_made_labels(maker);
+	if (r != GZ_OK) {
+		gz_err(maker->log, "cannot show the labels: %s", gz_result_text(r));
+		exchange_labels(maker);
+		(void)show_scene_objects(maker);
+	}
+	/* The renderer has let go of them. */
+	drop_made_labels(maker);
+	return r;
 }
 
 /* Draw by another technique if the settings ask for it. If that fails, the present one stays. */
@@ -746,8 +875,8 @@ void gz_frame_maker_destroy(struct gz_frame_maker **maker)
 {
 	if (!maker || !*maker)
 		return;
-	gz_spare_drop(&(*maker)->spare);
-	gz_picture_maker_destroy(&(*maker)->pictures);
+	gz_frame_drop_labels(*maker);
+	gz_frame_maker_stop(*maker);
 	free_time_points((*maker)->time_points);
 	gz_scene_free(&(*maker)->scene);
 	free(*maker);

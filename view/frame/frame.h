@@ -109,15 +109,6 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer);
 
-/**
- * Show the labels of the scene with another look from the next frame on. It takes longer than a
- * frame. The surfaces of gz_frame_maker_scene() change: no thread may use them meanwhile. If it
- * fails, the present ones stay.
- *
- * @return what gz_scene_remake_labels() and gz_picture_maker_show() return; logged
- */
-enum gz_result gz_frame_set_labels(struct gz_frame_maker *maker, const struct gz_label_look *look);
-
 /** How many time points the scene's volume has; 1: it is not a series. */
 int gz_frame_time_points(const struct gz_frame_maker *maker);
 
@@ -202,6 +193,33 @@ enum gz_frame_ready {
 enum gz_frame_ready gz_frame_prepare(struct gz_frame_maker *maker,
 				     const struct gz_scene_settings *settings,
 				     void (*finished)(void *user));
+
+/**
+ * Make the surfaces of the scene's labels ready, with the look of the settings, on threads of their
+ * own. Frames go on, with those that are shown. GZ_FRAME_READY: gz_frame_show_labels() can show
+ * them. GZ_FRAME_CANNOT_WAIT: they cannot be made; logged.
+ *
+ * @param finished  called on the threads; may be NULL
+ */
+enum gz_frame_ready gz_frame_prepare_labels(struct gz_frame_maker *maker,
+					    const struct gz_scene_settings *settings,
+					    void (*finished)(void *user));
+
+/**
+ * Show the surfaces that gz_frame_prepare_labels() has made ready from the next frame on. Those of
+ * gz_frame_maker_scene() change: no thread may use them meanwhile. If it fails, the present ones
+ * stay.
+ *
+ * @retval GZ_ERR_INVAL  there are none
+ * @return otherwise what gz_picture_maker_show() returns; logged
+ */
+enum gz_result gz_frame_show_labels(struct gz_frame_maker *maker);
+
+/** Whether a thread of gz_frame_prepare_labels() is still at work. */
+bool gz_frame_making_labels(const struct gz_frame_maker *maker);
+
+/** Forget what gz_frame_prepare_labels() makes, and wait for its threads. */
+void gz_frame_drop_labels(struct gz_frame_maker *maker);
 
 /** Drop what earlier frames accumulated: temporal.accumulate starts again with the next frame. */
 void gz_frame_forget(struct gz_frame_maker *maker);

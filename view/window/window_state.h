@@ -63,6 +63,7 @@ struct gz_window {
 	struct gz_window_loading *loading;
 	struct gz_window_menu_bar *menu;
 	struct gz_window_mesh_export *mesh_export;
+	struct gz_window_labels *labels;
 	struct gz_window_notices *notices_state;
 	struct gz_window_objects *objects;
 	struct gz_overlay *overlay;
