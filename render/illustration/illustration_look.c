@@ -11,12 +11,21 @@ static const char *const show_names[] = {
 	"edge-light", "overlap-shadow", "haze",       "lines",           NULL,
 };
 
+/* In the order of enum gz_illustration_drawing. */
+static const char *const drawing_names[] = { "grey", "stipples", "hatches", NULL };
+
 #define AT(field) offsetof(struct gz_illustration_look, field)
 
 const struct gz_option gz_illustration_look_options[] = {
 	{ "illustration.show", GZ_OPTION_CHOICE, AT(show), .choices = show_names,
 	  .preset = "shading",
 	  .help = "the shading map, the surface under a plain lamp, or one parameter alone" },
+	{ "illustration.drawing", GZ_OPTION_CHOICE, AT(drawing), .choices = drawing_names,
+	  .preset = "grey",
+	  .help = "how the shading map is drawn: as grey, by points, or by strokes" },
+	{ "illustration.pen_width", GZ_OPTION_DOUBLE, AT(pen_width), 0.5, 64, .preset = "2",
+	  .help = "stipples, hatches: width of strokes and diameter of points where one looks, "
+		  "px" },
 	{ "illustration.settings", GZ_OPTION_CHOICE, AT(source), .choices = source_names,
 	  .preset = "combined",
 	  .help = "which settings count: the six combined ones, or the single ones of "
@@ -62,6 +71,12 @@ bool gz_illustration_look_same(const struct gz_illustration_look *a,
 	       gz_options_same(gz_illustration_options, gz_illustration_option_count, &a->combined,
 			       &b->combined) &&
 	       gz_options_same(gz_shading_options, gz_shading_option_count, &a->single, &b->single);
+}
+
+enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illustration_look *look)
+{
+	return look->show == GZ_SHOW_SHADING ? (enum gz_illustration_drawing)look->drawing
+					     : GZ_DRAWING_GREY;
 }
 
 #define WEIGHT(field) offsetof(struct gz_shading_settings, field)

@@ -27,10 +27,19 @@ enum gz_illustration_show {
 	GZ_SHOW_FIRST_PARAMETER, /**< from here on one parameter alone, by the names' order */
 };
 
+/** How the shading map is drawn. */
+enum gz_illustration_drawing {
+	GZ_DRAWING_GREY,     /**< as it is */
+	GZ_DRAWING_STIPPLES, /**< by points: stipple_points.h */
+	GZ_DRAWING_HATCHES,  /**< by strokes: hatch_lines.h */
+};
+
 /** Sections [illustration] and [shading_map] of a scene. */
 struct gz_illustration_look {
 	int source;                       /**< enum gz_illustration_source */
 	int show;                         /**< enum gz_illustration_show, or a parameter */
+	int drawing;                      /**< enum gz_illustration_drawing */
+	double pen_width;                 /**< width of strokes, diameter of points, px */
 	char chosen_object[GZ_NAME_SIZE]; /**< from which distances count; empty: none */
 	char template_name[GZ_PATH_SIZE]; /**< gz_shading_template_named(), or a file; empty: none
 					   */
@@ -51,6 +60,9 @@ enum gz_illustration_binding {
 	GZ_ILLUSTRATION_BINDING_SINGLE,
 	GZ_ILLUSTRATION_BINDINGS,
 };
+
+/** How a look draws: its drawing, or grey where it shows one parameter alone. */
+enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illustration_look *look);
 
 /** Bind all tables to @p look, which is borrowed. */
 void gz_illustration_look_bind(struct gz_illustration_look *look,

@@ -92,6 +92,7 @@ static void draw_span_lines(const struct gz_shading_layers *layers,
 			    const struct gz_shading_weights *weights, size_t begin, size_t count,
 			    float *map)
 {
+	float *drawn = layers->apart ? layers->apart : map;
 	float fade[SPAN_MAX];
 	struct gz_shading_lines lines = {
 		.strong = layers->strong_lines + begin,
@@ -101,7 +102,7 @@ static void draw_span_lines(const struct gz_shading_layers *layers,
 	if (layers->thin_lines)
 		lines.thin = layers->thin_lines + begin;
 	fade_of_lines(layers, weights, begin, count, fade);
-	gz_shading_draw_lines(map + begin, &lines, count, weights->lines);
+	gz_shading_draw_lines(drawn + begin, &lines, count, weights->lines);
 }
 
 /* Pixels of one object, at most SPAN_MAX. */

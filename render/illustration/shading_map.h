@@ -82,6 +82,7 @@ struct gz_shading_layers {
 	const float *blurred_shadow; /**< depth blurred for overlap shadow */
 	const float *haze;           /**< atmospheric perspective, [0, 1] */
 	const float *strong_lines, *thin_lines;
+	float *apart; /**< lines are drawn here, onto white, and not into the map; NULL: into it */
 };
 
 /** How much each step counts for one object, [0, 1]. */

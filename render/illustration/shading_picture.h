@@ -31,6 +31,9 @@ struct gz_shading_frame {
 	 * of each then. NULL: the settings' for all. */
 	const struct gz_shading_weights *weights;
 	size_t objects;
+	/** width * height brightnesses that lines leave of white, [0, 1]: they are written here and
+	 *  not drawn into the map. NULL: they are drawn. */
+	float *lines_apart;
 	bool keeps_curve; /**< keep the tone curve of the frame before: of a layer behind that */
 };
 

@@ -178,6 +178,8 @@ static void write_empty_tile(const struct gz_shading_shared *shared, const struc
 		const size_t to = pixel_at(shared->frame, place->x, place->y + row);
 		for (int i = 0; i < place->columns; i++)
 			shared->map[to + (size_t)i] = 1;
+		for (int i = 0; shared->frame->lines_apart && i < place->columns; i++)
+			shared->frame->lines_apart[to + (size_t)i] = 1;
 		if (shared->out_pixels)
 			memset(shared->out_pixels + to, 0xFF,
 			       (size_t)place->columns * sizeof *shared->out_pixels);
@@ -185,13 +187,16 @@ static void write_empty_tile(const struct gz_shading_shared *shared, const struc
 }
 
 static void write_tile(const struct gz_shading_shared *shared, const struct tile_place *place,
-		       const float *map)
+		       const float *map, const float *apart)
 {
 	const struct gz_shading_frame *frame = shared->frame;
 	for (int row = 0; row < place->rows; row++) {
 		const size_t to = pixel_at(frame, place->x, place->y + row);
 		const float *from = map + (size_t)row * COLUMNS;
 		memcpy(shared->map + to, from, (size_t)place->columns * sizeof *map);
+		if (frame->lines_apart)
+			memcpy(frame->lines_apart + to, apart + (size_t)row * COLUMNS,
+			       (size_t)place->columns * sizeof *apart);
 		if (shared->out_pixels)
 			gz_shading_grey(from, (size_t)place->columns, shared->out_pixels + to);
 	}
@@ -219,9 +224,14 @@ void gz_shading_tile_compose(const struct gz_shading_shared *shared, int x, int 
 	}
 	if (shared->settings->lines > 0)
 		fill_lines(shared->settings, place.rows, tile, &layers);
+	if (shared->frame->lines_apart) {
+		for (size_t i = 0; i < count; i++)
+			tile->apart[i] = 1;
+		layers.apart = tile->apart;
+	}
 	gz_tone_apply(shared->curve, tile->ids, count, tile->map);
 	const bool own = shared->frame->weights && shared->frame->objects > 0;
 	gz_shading_map_compose(&layers, &all, own ? shared->frame->weights : &shared->weights,
 			       own ? shared->frame->objects : 1, tile->map);
-	write_tile(shared, &place, tile->map);
+	write_tile(shared, &place, tile->map, tile->apart);
 }

@@ -49,6 +49,7 @@ struct gz_shading_tile {
 	float edge[GZ_SHADING_TILE_PIXELS], shadow[GZ_SHADING_TILE_PIXELS];
 	float haze[GZ_SHADING_TILE_PIXELS], scene[GZ_SHADING_TILE_PIXELS];
 	float strong[GZ_SHADING_TILE_PIXELS], thin[GZ_SHADING_TILE_PIXELS];
+	float apart[GZ_SHADING_TILE_PIXELS];
 	float room[GZ_SHADING_TILE_PIXELS], other_room[GZ_SHADING_TILE_PIXELS];
 };
 

@@ -56,6 +56,7 @@ static void set_up_easel(struct easel *easel)
 	};
 	assert_int_equal(gz_options_preset(&binding), GZ_OK);
 	easel->look.source = GZ_ILLUSTRATION_SINGLE;
+	easel->look.pen_width = 2;
 	easel->gaze = (struct gz_point) { 0.4F, 0.45F };
 	easel->foveation = gz_foveation_full();
 }
@@ -634,6 +635,107 @@ static void what_cannot_be_drawn_is_refused(void **state)
 	take_down_easel(&easel);
 }
 
+/* The mean brightness of all objects. */
+static double mean_of_objects(const struct easel *easel)
+{
+	double sum = 0;
+	size_t count = 0;
+	for (int i = 0; i < PIXELS; i++)
+		if (easel->ids.words[i] != 0) {
+			sum += gz_image_words(&((struct easel *)easel)->image)[i] & 255;
+			count++;
+		}
+	return sum / 255 / (double)count;
+}
+
+/* A drawing is as dark as the grey picture, with every pixel cast and foveated. */
+static void check_darkness(struct easel *easel, int drawing)
+{
+	const int methods[] = { GZ_METHOD_STANDARD, GZ_METHOD_ACUITY };
+	easel->look.pen_width = 1.5;
+	for (int i = 0; i < 2; i++) {
+		easel->foveation.method = methods[i];
+		easel->look.drawing = GZ_DRAWING_GREY;
+		draw_easel(easel, 2);
+		const double grey = mean_of_objects(easel);
+		easel->look.drawing = drawing;
+		draw_easel(easel, 2);
+		const double drawn = mean_of_objects(easel);
+		if (fabs(drawn - grey) > 0.05)
+			fail_msg("drawing %d, method %d: %g, the map %g", drawing, methods[i],
+				 drawn, grey);
+	}
+}
+
+static void drawings_are_as_dark_as_the_map(void **state)
+{
+	(void)state;
+	struct easel easel;
+	set_up_easel(&easel);
+	plain_look(&easel);
+	easel.camera.eye[1] = -1;
+	check_darkness(&easel, GZ_DRAWING_STIPPLES);
+	check_darkness(&easel, GZ_DRAWING_HATCHES);
+	take_down_easel(&easel);
+}
+
+/* The ball behind is drawn by points of its own through the transparent one. */
+static void points_of_all_layers_together_have_the_tone(void **state)
+{
+	(void)state;
+	struct easel easel;
+	set_up_easel(&easel);
+	plain_look(&easel);
+	add_ball(&easel, 0, 0, 0);
+	easel.camera.eye[1] = -1;
+	easel.styles[0].transparency = 0.6;
+	check_darkness(&easel, GZ_DRAWING_STIPPLES);
+	take_down_easel(&easel);
+}
+
+static void drawing_has_ink_and_paper_and_lines(void **state)
+{
+	(void)state;
+	struct easel easel;
+	struct gz_image alone = { 0 };
+	size_t between = 0;
+	set_up_easel(&easel);
+	easel.look.drawing = GZ_DRAWING_STIPPLES;
+	easel.look.pen_width = 8;
+	easel.look.single.lines = 1;
+	draw_easel(&easel, 2);
+	for (int i = 0; i < PIXELS; i++) {
+		const int grey = grey_at(&easel, i % WIDTH, i / WIDTH);
+		between += grey > 0 && grey < 255;
+		if (easel.ids.words[i] != 0 && easel.ids.words[i - 1] == 0)
+			assert_int_equal(grey, 0); /* a line all around */
+	}
+	assert_true(between < PIXELS / 20); /* rims of points alone */
+	memcpy(&alone, &easel.image, sizeof alone);
+	memset(&easel.image, 0, sizeof easel.image);
+	draw_easel(&easel, 1);
+	assert_memory_equal(alone.pixels, easel.image.pixels, 4 * (size_t)PIXELS);
+	gz_image_free(&alone);
+	take_down_easel(&easel);
+}
+
+static void parameter_alone_is_grey(void **state)
+{
+	(void)state;
+	struct easel easel;
+	struct gz_image grey = { 0 };
+	set_up_easel(&easel);
+	easel.look.show = GZ_SHOW_PLAIN;
+	draw_easel(&easel, 2);
+	memcpy(&grey, &easel.image, sizeof grey);
+	memset(&easel.image, 0, sizeof easel.image);
+	easel.look.drawing = GZ_DRAWING_HATCHES;
+	draw_easel(&easel, 2);
+	assert_memory_equal(grey.pixels, easel.image.pixels, 4 * (size_t)PIXELS);
+	gz_image_free(&grey);
+	take_down_easel(&easel);
+}
+
 TEST_SUITE(illustrate)
 {
 	const struct CMUnitTest tests[] = {
@@ -650,6 +752,10 @@ TEST_SUITE(illustrate)
 		cmocka_unit_test(frames_that_differ_little_stay_alike),
 		cmocka_unit_test(broken_meshes_are_drawn_as_far_as_they_go),
 		cmocka_unit_test(what_cannot_be_drawn_is_refused),
+		cmocka_unit_test(drawings_are_as_dark_as_the_map),
+		cmocka_unit_test(points_of_all_layers_together_have_the_tone),
+		cmocka_unit_test(drawing_has_ink_and_paper_and_lines),
+		cmocka_unit_test(parameter_alone_is_grey),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

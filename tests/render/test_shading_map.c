@@ -526,8 +526,8 @@ static void steps_come_in_the_order_of_the_thesis(void **state)
 	const float edge[4] = { 1, 0.4F, 0.6F, 0.6F }, shadow[4] = { 1, 0.2F, 0.4F, 0.4F };
 	const float haze[4] = { 1, 0, 0.5F, 0.5F };
 	const float strong[4] = { 0, 0, GZ_LINE_INNER, GZ_LINE_INNER }, thin[4] = { 0 };
-	const struct gz_shading_layers layers = { ids,    depth, scene,  edge,
-						  shadow, haze,  strong, thin };
+	const struct gz_shading_layers layers = { ids,  depth,  scene, edge, shadow,
+						  haze, strong, thin,  NULL };
 	const struct gz_shading_weights weights[2] = {
 		{ .scene = 1, .edge_light = 1 },
 		{ .overlap_shadow = 1, .haze = 0.5F, .lines = 0.8F, .background = 1 },

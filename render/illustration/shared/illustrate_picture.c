@@ -23,6 +23,8 @@ void gz_illustrate_picture_close(struct gz_illustrate_picture *picture)
 			gz_plane_free(&picture->planes[layer][i]);
 	free(picture->sums);
 	free(picture->shares);
+	free(picture->together);
+	gz_illustrate_drawing_free(&picture->drawing);
 	*picture = (struct gz_illustrate_picture) { 0 };
 }
 
@@ -33,9 +35,12 @@ static enum gz_result make_blend_room(struct gz_illustrate_picture *picture, siz
 		return GZ_OK;
 	free(picture->sums);
 	free(picture->shares);
+	free(picture->together);
+	picture->together = calloc(pixels, sizeof *picture->together);
 	picture->sums = calloc(pixels, sizeof *picture->sums);
 	picture->shares = calloc(pixels, sizeof *picture->shares);
-	picture->blend_room = picture->sums && picture->shares ? pixels : 0;
+	const bool complete = picture->sums && picture->shares && picture->together;
+	picture->blend_room = complete ? pixels : 0;
 	return picture->blend_room > 0 ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
@@ -55,6 +60,8 @@ enum gz_result gz_illustrate_picture_prepare(struct gz_illustrate_picture *pictu
 						 plan->height);
 	if (result == GZ_OK && picture->layers > 1)
 		result = make_blend_room(picture, (size_t)plan->width * (size_t)plan->height);
+	if (result == GZ_OK)
+		result = gz_illustrate_drawing_begin(&picture->drawing, scene, shot);
 	return result;
 }
 
@@ -65,6 +72,12 @@ struct illustrate_composing {
 	const struct gz_illustrate_frame *frame;
 	struct gz_workers *workers;
 };
+
+/* Whether marks draw the picture. */
+static bool is_drawn(const struct gz_illustrate_picture *picture)
+{
+	return picture->drawing.kind != GZ_DRAWING_GREY;
+}
 
 /* Compose the map of one layer. Those behind the front one take over its tone curve. */
 static enum gz_result compose_layer(const struct illustrate_composing *composing, int layer,
@@ -87,12 +100,14 @@ static enum gz_result compose_layer(const struct illustrate_composing *composing
 		.weights = composing->frame->weights,
 		.objects = composing->scene->id_count,
 		.keeps_curve = layer > 0,
+		.lines_apart = is_drawn(picture) ? picture->drawing.layer_lines : NULL,
 	};
 	return gz_shading_picture_compose(picture->shading, &frame, &composing->frame->settings,
 					  composing->workers, out_pixels, out_map);
 }
 
-/* Add the map of a layer, as far as those before it let it through. */
+/* Add the map of a layer, as far as those before it let it through. The lines of a drawing are let
+ * through alike. */
 static void blend_layer(const struct illustrate_composing *composing, int layer, const float *map,
 			size_t pixels)
 {
@@ -100,13 +115,48 @@ static void blend_layer(const struct illustrate_composing *composing, int layer,
 	const struct gz_illustrate_scene *scene = composing->scene;
 	const uint32_t *ids = picture->planes[layer][GZ_ILLUSTRATE_IDS].words;
 	float *sums = picture->sums, *shares = picture->shares;
+	float *lines = is_drawn(picture) ? picture->drawing.layer_lines : NULL;
 	for (size_t i = 0; i < pixels; i++) {
 		const size_t id = ids[i];
 		const bool is_object = id > 0 && id <= scene->id_count;
 		const float opacity = is_object ? scene->opacities[id - 1] : 1;
 		sums[i] += shares[i] * opacity * map[i];
+		if (lines)
+			lines[i] = 1 - shares[i] * opacity * (1 - lines[i]);
 		shares[i] *= 1 - opacity;
 	}
+}
+
+/* Add the marks of a layer to the drawing. */
+static enum gz_result draw_layer(const struct illustrate_composing *composing, int layer,
+				 const float *map, size_t pixels)
+{
+	struct gz_illustrate_picture *picture = composing->picture;
+	const bool blended = picture->layers > 1;
+	for (size_t i = 0; i < pixels && blended; i++)
+		picture->together[i] = picture->sums[i] + picture->shares[i];
+	const struct gz_drawn_layer drawn = {
+		.depth = &picture->planes[layer][GZ_ILLUSTRATE_DEPTH],
+		.ids = &picture->planes[layer][GZ_ILLUSTRATE_IDS],
+		.brightness = blended ? picture->together : map,
+	};
+	return gz_illustrate_drawing_add(&picture->drawing, composing->scene, &drawn,
+					 composing->workers);
+}
+
+/* Compose a layer, and add it to those before it. */
+static enum gz_result add_layer(const struct illustrate_composing *composing, int layer,
+				struct gz_image *image)
+{
+	const struct gz_illustrate_picture *picture = composing->picture;
+	const size_t pixels = (size_t)image->width * (size_t)image->height;
+	const bool blended = picture->layers > 1, drawn = is_drawn(picture);
+	const float *map = NULL;
+	const enum gz_result result = compose_layer(
+		composing, layer, blended || drawn ? NULL : gz_image_words(image), &map);
+	if (result == GZ_OK && blended)
+		blend_layer(composing, layer, map, pixels);
+	return result == GZ_OK && drawn ? draw_layer(composing, layer, map, pixels) : result;
 }
 
 static enum gz_result compose_layers(const struct illustrate_composing *composing,
@@ -114,21 +164,17 @@ static enum gz_result compose_layers(const struct illustrate_composing *composin
 {
 	struct gz_illustrate_picture *picture = composing->picture;
 	const size_t pixels = (size_t)image->width * (size_t)image->height;
-	const float *map = NULL;
-	enum gz_result result = compose_layer(
-		composing, 0, picture->layers == 1 ? gz_image_words(image) : NULL, &map);
-	if (result == GZ_OK && picture->layers > 1) {
-		memset(picture->sums, 0, pixels * sizeof *picture->sums);
-		for (size_t i = 0; i < pixels; i++)
-			picture->shares[i] = 1;
-		blend_layer(composing, 0, map, pixels);
+	const bool blended = picture->layers > 1;
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < pixels && blended; i++) {
+		picture->sums[i] = 0;
+		picture->shares[i] = 1;
 	}
-	for (int layer = 1; layer < picture->layers && result == GZ_OK; layer++) {
-		result = compose_layer(composing, layer, NULL, &map);
-		if (result == GZ_OK)
-			blend_layer(composing, layer, map, pixels);
-	}
-	if (result == GZ_OK && picture->layers > 1)
+	for (int layer = 0; layer < picture->layers && result == GZ_OK; layer++)
+		result = add_layer(composing, layer, image);
+	if (result == GZ_OK && is_drawn(picture))
+		return gz_illustrate_drawing_finish(&picture->drawing, composing->workers, image);
+	if (result == GZ_OK && blended)
 		gz_shading_grey(picture->sums, pixels, gz_image_words(image));
 	return result;
 }

@@ -11,6 +11,7 @@
 #include "base/result.h"
 #include "base/workers.h"
 #include "render/illustration/shading_picture.h"
+#include "render/illustration/shared/illustrate_drawing.h"
 #include "render/illustration/shared/illustrate_frame.h"
 #include "render/illustration/shared/illustrate_scene.h"
 #include "render/illustration/shared/illustrate_shot.h"
@@ -35,9 +36,11 @@ struct gz_illustrate_picture {
 	struct gz_plane planes[GZ_ILLUSTRATE_LAYERS_MAX][GZ_ILLUSTRATE_FOUND];
 	int layers;      /**< 1 to GZ_ILLUSTRATE_LAYERS_MAX; 1: no object is transparent */
 	int plane_count; /**< GZ_ILLUSTRATE_FOUND, or one less without distances */
+	struct gz_illustrate_drawing drawing; /**< by marks, if the look asks for it */
 	/** Within shared/: */
 	struct gz_shading_picture *shading;
 	float *sums, *shares; /**< of the layers before one: their map, and what they let through */
+	float *together;      /**< brightness of the layers up to one */
 	size_t blend_room;
 };
 

@@ -12,14 +12,16 @@
 
 #define GZ_LOG_MODULE "illustration"
 
-/* Most of an object's name that the name of its kept file holds, and room for the whole ending. */
-enum { KEPT_NAME_MAX = 48, KEPT_ENDING_SIZE = 64 };
+/* Most of an object's name that the name of its kept file holds. */
+enum { KEPT_NAME_MAX = 48 };
 
 /* Free what is known of items that are not shown any more. */
 static void free_items(struct gz_illustrate_item *items, size_t count)
 {
-	for (size_t i = 0; items && i < count; i++)
+	for (size_t i = 0; items && i < count; i++) {
 		free(items[i].vertices);
+		gz_illustrate_marks_free(&items[i].marks);
+	}
 	free(items);
 }
 
@@ -131,8 +133,10 @@ static bool take_known(struct gz_illustrate_scene *scene, const struct gz_object
 		struct gz_illustrate_item *from = &scene->items[old];
 		items[i].key = from->key;
 		items[i].vertices = from->vertices;
+		items[i].marks = from->marks;
 		from->key.known = false;
 		from->vertices = NULL;
+		from->marks = (struct gz_illustrate_marks) { 0 };
 	}
 	return same;
 }
@@ -230,15 +234,14 @@ static bool is_same_key(const struct gz_illustrate_key *a, const struct gz_illus
 	       a->revision == b->revision && a->isovalue == b->isovalue;
 }
 
-/* How the name of an object's kept file ends: by the object's own name, which other scenes of the
- * same input give it too, not by its place in this one. */
-static void name_kept_file(const struct gz_object *object, char out_ending[KEPT_ENDING_SIZE])
+void gz_illustrate_kept_name(const struct gz_object *object, const char *what,
+			     char out_ending[GZ_ILLUSTRATE_KEPT_SIZE])
 {
 	if (!object->name || !object->name[0]) {
-		snprintf(out_ending, KEPT_ENDING_SIZE, "%u.shading", (unsigned)object->id);
+		snprintf(out_ending, GZ_ILLUSTRATE_KEPT_SIZE, "%u.%s", (unsigned)object->id, what);
 		return;
 	}
-	snprintf(out_ending, KEPT_ENDING_SIZE, "%.*s.shading", KEPT_NAME_MAX, object->name);
+	snprintf(out_ending, GZ_ILLUSTRATE_KEPT_SIZE, "%.*s.%s", KEPT_NAME_MAX, object->name, what);
 	for (size_t i = 0; out_ending[i]; i++)
 		if (!isalnum((unsigned char)out_ending[i]) && !strchr("._-", out_ending[i]))
 			out_ending[i] = '_';
@@ -252,12 +255,13 @@ static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t ind
 	struct gz_illustrate_item *item = &scene->items[index];
 	const struct gz_object *object = &scene->meshes.items[index].object;
 	const bool is_kept = object->mesh && object->input;
-	char ending[KEPT_ENDING_SIZE];
-	name_kept_file(object, ending);
+	char ending[GZ_ILLUSTRATE_KEPT_SIZE];
+	gz_illustrate_kept_name(object, "shading", ending);
 	const struct gz_mesh_cache_place place = { object->input, ending };
 	struct gz_shading_vertices vertices;
 	free(item->vertices);
 	item->vertices = NULL;
+	gz_illustrate_marks_free(&item->marks);
 	item->key.known = false;
 	enum gz_result result =
 		gz_shading_vertices_make(&scene->meshes.shown[index], is_kept ? &place : NULL,
@@ -365,6 +369,10 @@ enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene,
 	if (chosen_id > 0 && scene->measured_id != chosen_id)
 		result = measure_scene(scene, chosen_id, workers);
 	list_illustrated(scene);
+	bool new_marks = false;
+	if (result == GZ_OK)
+		result = gz_illustrate_marks_make(scene, shot, workers, &new_marks);
+	scene->made += new_marks;
 	return result;
 }
 

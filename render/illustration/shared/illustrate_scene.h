@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "base/workers.h"
 #include "render/illustration/shading_parameters.h"
+#include "render/illustration/shared/illustrate_marks.h"
 #include "render/illustration/shared/illustrate_shot.h"
 #include "render/surface/shared/surface_meshes.h"
 
@@ -59,6 +60,7 @@ struct gz_illustrate_item {
 	float opacity; /**< [0, 1] */
 	struct gz_illustrate_key key;
 	struct gz_illustrate_vertex *vertices; /**< of the mesh that is shown; NULL: not made */
+	struct gz_illustrate_marks marks;      /**< likewise */
 };
 
 /** All of it. Zero-initialised with log set, it shows nothing. */
@@ -116,6 +118,17 @@ uint32_t gz_illustrate_shot_measured(const struct gz_illustrate_shot *shot);
 enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene,
 					   const struct gz_illustrate_shot *shot,
 					   struct gz_workers *workers);
+
+/** Bytes of gz_illustrate_kept_name() with its NUL. */
+#define GZ_ILLUSTRATE_KEPT_SIZE 80
+/** Bytes of what it says was made, with its NUL. */
+#define GZ_ILLUSTRATE_WHAT_SIZE 24
+
+/** How the name of a file ends that keeps what was made of an object: by the object's own name,
+ *  which other scenes of the same input give it too, not by its place in this one.
+ *  @param what  the ending's last part, less than GZ_ILLUSTRATE_WHAT_SIZE bytes */
+void gz_illustrate_kept_name(const struct gz_object *object, const char *what,
+			     char out_ending[GZ_ILLUSTRATE_KEPT_SIZE]);
 
 /** Free all but the log. */
 void gz_illustrate_scene_free(struct gz_illustrate_scene *scene);

@@ -1,0 +1,189 @@
+#include "render/illustration/shared/illustrate_drawing.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Sizes of marks that struct gz_stipple_view allows. */
+#define MARK_LEAST_PX 0.25
+#define MARK_MOST_PX  64
+
+/* Rows of the picture that a thread writes at once. */
+enum { PART_ROWS = 16 };
+
+static enum gz_result make_plane_room(struct gz_illustrate_drawing *drawing, size_t pixels)
+{
+	if (drawing->room >= pixels)
+		return GZ_OK;
+	free(drawing->before);
+	free(drawing->outlines);
+	free(drawing->layer_lines);
+	drawing->before = malloc(pixels * sizeof *drawing->before);
+	drawing->outlines = malloc(pixels * sizeof *drawing->outlines);
+	drawing->layer_lines = malloc(pixels * sizeof *drawing->layer_lines);
+	drawing->room = drawing->before && drawing->outlines && drawing->layer_lines ? pixels : 0;
+	return drawing->room > 0 ? GZ_OK : GZ_ERR_NO_MEM;
+}
+
+/* Marks grow away from the gaze, unless every pixel is cast. */
+static enum gz_result make_mark_scale(const struct gz_plan *plan, struct gz_stipple_scale *scale)
+{
+	if (!plan->made_for.valid || plan->reconstruction == GZ_RECONSTRUCT_DIRECT) {
+		gz_stipple_scale_free(scale);
+		return GZ_OK;
+	}
+	const struct gz_point gaze = { (float)(plan->focus_px[0] / plan->width),
+				       (float)(plan->focus_px[1] / plan->height) };
+	return gz_stipple_scale_make(&plan->made_for.foveation, &plan->made_for.display, gaze,
+				     plan->width, plan->height, scale);
+}
+
+/* The rays of a shot's pixels, mm. */
+static enum gz_result find_rays(const struct gz_illustrate_shot *shot, double world_mm,
+				struct gz_ray_frame *out_rays)
+{
+	const enum gz_result result = gz_plan_rays(shot->plan, shot->camera, out_rays);
+	for (int axis = 0; axis < 3 && result == GZ_OK; axis++) {
+		out_rays->origin00[axis] *= world_mm;
+		out_rays->origin_dx[axis] *= world_mm;
+		out_rays->origin_dy[axis] *= world_mm;
+	}
+	return result;
+}
+
+enum gz_result gz_illustrate_drawing_begin(struct gz_illustrate_drawing *drawing,
+					   const struct gz_illustrate_scene *scene,
+					   const struct gz_illustrate_shot *shot)
+{
+	const struct gz_plan *plan = shot->plan;
+	const size_t pixels = (size_t)plan->width * (size_t)plan->height;
+	drawing->kind = gz_illustration_look_drawing(shot->look);
+	if (drawing->kind == GZ_DRAWING_GREY)
+		return GZ_OK;
+	enum gz_result result = make_plane_room(drawing, pixels);
+	if (result == GZ_OK)
+		result = gz_plane_resize(&drawing->tone, GZ_PLANE_VALUE, plan->width, plan->height);
+	if (result == GZ_OK)
+		result = make_mark_scale(plan, &drawing->scale);
+	if (result == GZ_OK)
+		result = find_rays(shot, scene->meshes.world_mm, &drawing->rays);
+	if (result != GZ_OK)
+		return result;
+	const double rate = plan->made_for.valid ? plan->made_for.request.rays_per_px : 1;
+	drawing->pen_px = shot->look->pen_width * rate;
+	drawing->width = plan->width;
+	drawing->height = plan->height;
+	drawing->discs.count = drawing->lines.count = 0;
+	for (size_t i = 0; i < pixels; i++)
+		drawing->before[i] = drawing->outlines[i] = 1;
+	return GZ_OK;
+}
+
+/* Find the tone of a layer's marks, and go on to what is behind it. */
+static void take_layer(struct gz_illustrate_drawing *drawing, const struct gz_drawn_layer *layer)
+{
+	const size_t pixels = (size_t)drawing->width * (size_t)drawing->height;
+	for (size_t i = 0; i < pixels; i++) {
+		const float before = drawing->before[i];
+		const float tone = before > 0 ? layer->brightness[i] / before : 1;
+		memcpy(&drawing->tone.words[i], &tone, sizeof tone);
+		drawing->before[i] = layer->brightness[i];
+	}
+	for (size_t i = 0; i < pixels; i++)
+		drawing->outlines[i] -= 1 - drawing->layer_lines[i];
+}
+
+static enum gz_result choose_marks(struct gz_illustrate_drawing *drawing,
+				   const struct gz_illustrate_marks *marks,
+				   const struct gz_stipple_view *view, struct gz_workers *workers)
+{
+	static const enum gz_hatch_layer layers[GZ_HATCH_DIRECTIONS] = { GZ_HATCH_FIRST,
+									 GZ_HATCH_CROSS };
+	enum gz_result result = GZ_OK;
+	if (drawing->kind == GZ_DRAWING_STIPPLES)
+		return gz_stipple_choose(&marks->points, view, workers, &drawing->discs);
+	for (int i = 0; i < GZ_HATCH_DIRECTIONS && result == GZ_OK; i++)
+		result = gz_hatch_choose(&marks->strokes[i], view, layers[i], workers,
+					 &drawing->lines);
+	return result;
+}
+
+enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
+					 const struct gz_illustrate_scene *scene,
+					 const struct gz_drawn_layer *layer,
+					 struct gz_workers *workers)
+{
+	const double size_px =
+		drawing->kind == GZ_DRAWING_STIPPLES ? drawing->pen_px / 2 : drawing->pen_px;
+	enum gz_result result = GZ_OK;
+	take_layer(drawing, layer);
+	for (size_t i = 0; i < scene->count && result == GZ_OK; i++) {
+		const struct gz_stipple_view view = {
+			.rays = &drawing->rays,
+			.world_per_mm = 1,
+			.tone = &drawing->tone,
+			.depth = layer->depth,
+			.ids = layer->ids,
+			.id = scene->meshes.items[i].object.id,
+			.size_px = fmin(fmax(size_px, MARK_LEAST_PX), MARK_MOST_PX),
+			.tolerance_px = GZ_STIPPLE_TOLERANCE_PX,
+			.scale = drawing->scale.factors ? &drawing->scale : NULL,
+			.backs = true,
+		};
+		result = choose_marks(drawing, &scene->items[i].marks, &view, workers);
+	}
+	return result;
+}
+
+/* Paper and ink, and lines over them. */
+static void write_rows(void *user, size_t part, int worker)
+{
+	const struct gz_illustrate_drawing *drawing = ((const void *const *)user)[0];
+	struct gz_image *image = ((void *const *)user)[1];
+	const int first = (int)part * PART_ROWS;
+	(void)worker;
+	for (int y = first; y < first + PART_ROWS && y < drawing->height; y++) {
+		const size_t from = (size_t)y * (size_t)drawing->width;
+		const uint8_t *ink = drawing->sheet.ink + (size_t)y * drawing->sheet.stride;
+		const float *outlines = drawing->outlines + from;
+		uint32_t *pixels = gz_image_words(image) + from;
+		for (int x = 0; x < drawing->width; x++) {
+			const uint32_t paper = 255U - ink[x];
+			const float left = outlines[x] < 0 ? 0 : outlines[x];
+			const uint32_t line = (uint32_t)(int)(left * 255 + 0.5F);
+			const uint32_t grey = line < paper ? line : paper;
+			pixels[x] = UINT32_C(0xFF000000) | grey << 16 | grey << 8 | grey;
+		}
+	}
+}
+
+enum gz_result gz_illustrate_drawing_finish(struct gz_illustrate_drawing *drawing,
+					    struct gz_workers *workers, struct gz_image *image)
+{
+	struct gz_stipple_sheet *sheet = &drawing->sheet;
+	void *both[2] = { drawing, image };
+	enum gz_result result = gz_stipple_sheet_clear(sheet, drawing->width, drawing->height);
+	if (result == GZ_OK)
+		result = gz_stipple_sheet_add_discs(sheet, drawing->discs.discs,
+						    drawing->discs.count, workers);
+	if (result == GZ_OK)
+		result = gz_stipple_sheet_add_pieces(sheet, drawing->lines.pieces,
+						     drawing->lines.count, workers);
+	if (result == GZ_OK)
+		gz_workers_run(workers, write_rows, both,
+			       ((size_t)drawing->height + PART_ROWS - 1) / PART_ROWS);
+	return result;
+}
+
+void gz_illustrate_drawing_free(struct gz_illustrate_drawing *drawing)
+{
+	gz_stipple_scale_free(&drawing->scale);
+	gz_stipple_discs_free(&drawing->discs);
+	gz_hatch_lines_free(&drawing->lines);
+	gz_stipple_sheet_free(&drawing->sheet);
+	gz_plane_free(&drawing->tone);
+	free(drawing->before);
+	free(drawing->outlines);
+	free(drawing->layer_lines);
+	*drawing = (struct gz_illustrate_drawing) { 0 };
+}

@@ -1,0 +1,73 @@
+/**
+ * @file
+ * A picture that is drawn by marks: those of all layers of surfaces, and lines over them.
+ *
+ * Each layer is drawn by marks of its own objects. Marks of different layers cover each other by
+ * chance, so a layer is drawn with the tone M / N, where N is the brightness of the layers before
+ * it, and M the brightness with it.
+ */
+#ifndef GZ_RENDER_ILLUSTRATION_SHARED_ILLUSTRATE_DRAWING_H
+#define GZ_RENDER_ILLUSTRATION_SHARED_ILLUSTRATE_DRAWING_H
+
+#include <stddef.h>
+
+#include "base/result.h"
+#include "base/workers.h"
+#include "render/illustration/hatch_lines.h"
+#include "render/illustration/illustration_look.h"
+#include "render/illustration/shared/illustrate_scene.h"
+#include "render/illustration/stipple_points.h"
+#include "render/picture/image.h"
+#include "render/picture/plane.h"
+
+/** The marks of a picture. Zero-initialised is empty; keep it from picture to picture. */
+struct gz_illustrate_drawing {
+	enum gz_illustration_drawing kind; /**< GZ_DRAWING_GREY: nothing is drawn here */
+	int width, height;
+	double pen_px;                 /**< width of the pen at the gaze, pixels of this picture */
+	struct gz_ray_frame rays;      /**< of the picture's pixels, mm */
+	struct gz_stipple_scale scale; /**< without factors: 1 everywhere */
+	struct gz_stipple_discs discs; /**< of GZ_DRAWING_STIPPLES */
+	struct gz_hatch_lines lines;   /**< of GZ_DRAWING_HATCHES */
+	struct gz_stipple_sheet sheet;
+	struct gz_plane tone; /**< of a layer */
+	float *before;        /**< brightness of the layers before it */
+	float *outlines;      /**< brightness that the lines of all layers leave */
+	float *layer_lines;   /**< those of a layer: struct gz_shading_frame.lines_apart */
+	size_t room;          /**< pixels of these three */
+};
+
+/**
+ * Begin the picture of a shot.
+ *
+ * @param scene  prepared for the shot
+ * @retval GZ_ERR_INVAL   the camera is not valid
+ * @retval GZ_ERR_NO_MEM  out of memory
+ */
+enum gz_result gz_illustrate_drawing_begin(struct gz_illustrate_drawing *drawing,
+					   const struct gz_illustrate_scene *scene,
+					   const struct gz_illustrate_shot *shot);
+
+/** A layer of surfaces. All pointers are borrowed. */
+struct gz_drawn_layer {
+	const struct gz_plane *depth, *ids; /**< as struct gz_illustrate_picture has them */
+	/** Brightness of this layer and those before it, as far as they hide it; what is behind
+	 *  counts as white. */
+	const float *brightness;
+};
+
+/** Add the marks of a layer. Its lines are in drawing->layer_lines. @retval GZ_ERR_NO_MEM */
+enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
+					 const struct gz_illustrate_scene *scene,
+					 const struct gz_drawn_layer *layer,
+					 struct gz_workers *workers);
+
+/** Draw what was added. The same bits for any number of threads. @param image  of the picture's
+ *  size; every pixel is written @retval GZ_ERR_NO_MEM */
+enum gz_result gz_illustrate_drawing_finish(struct gz_illustrate_drawing *drawing,
+					    struct gz_workers *workers, struct gz_image *image);
+
+/** Free all and zero it. */
+void gz_illustrate_drawing_free(struct gz_illustrate_drawing *drawing);
+
+#endif
