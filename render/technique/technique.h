@@ -181,7 +181,8 @@ struct gz_technique {
 	const char *const *backends; /**< names, NULL-terminated, best first on a graphics device */
 	bool backends_agree;         /**< all of them draw the same picture, but for rounding */
 	bool stylised;               /**< draws as an illustrator does: not how matter looks */
-	enum gz_sharing sharing;     /**< those that share have settings of one struct */
+	bool whole_pictures; /**< a picture depends on all its pixels: it is not made in strips */
+	enum gz_sharing sharing; /**< those that share have settings of one struct */
 	/**
 	 * Check a backend's name and parameters before there is anything to show. Logged. Returns
 	 * the failures of create() but GZ_ERR_NO_MEM.

@@ -5,6 +5,7 @@
 #include <semaphore.h>
 #include <string.h>
 
+#include "render/frame/picture_maker.h"
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
 #include "render/small_scene.h"
@@ -25,7 +26,7 @@ static void finish(void *user)
 	sem_post(&bench->finished);
 }
 
-static void start(struct bench *bench)
+static void start_with(struct bench *bench, const struct gz_technique *technique)
 {
 	memset(bench, 0, sizeof *bench);
 	bench->scene = small_scene_waves(24, 20, 28, GZ_VOXEL_U8);
@@ -33,7 +34,7 @@ static void start(struct bench *bench)
 	bench->scene.display = gz_display_default(WIDTH, HEIGHT);
 	assert_int_equal(sem_init(&bench->finished, 0, 0), 0);
 	const struct gz_object object = {
-		.technique = gz_techniques[0],
+		.technique = technique,
 		.id = 1,
 		.volume = &bench->scene.volume,
 	};
@@ -46,6 +47,11 @@ static void start(struct bench *bench)
 	};
 	assert_int_equal(gz_reference_worker_start(&source, &bench->scene.transfer, &bench->worker),
 			 GZ_OK);
+}
+
+static void start(struct bench *bench)
+{
+	start_with(bench, gz_techniques[0]);
 }
 
 static void stop(struct bench *bench)
@@ -188,6 +194,52 @@ static void worker_can_stop_at_any_time(void **state)
 	gz_reference_worker_stop(NULL);
 }
 
+static const struct gz_technique *named_technique(const char *name)
+{
+	size_t i = 0;
+	while (strcmp(gz_techniques[i]->name, name) != 0)
+		i++;
+	return gz_techniques[i];
+}
+
+/* Tones of an illustration are equalised over all of its pixels. */
+static void illustration_is_made_whole(void **state)
+{
+	(void)state;
+	struct bench bench;
+	struct gz_picture_maker *maker;
+	struct gz_image *whole;
+	const struct gz_foveation full = gz_foveation_full();
+	const struct gz_picture_maker_params params = { .backend = "cpu" };
+	const struct gz_technique *illustrate = named_technique("illustrate");
+	int x, y;
+	if (illustrate->check("cpu", NULL, NULL) != GZ_OK)
+		skip();
+	start_with(&bench, illustrate);
+	bench.scene.rays.surface.isovalue = 0.5;
+	ask(&bench, 1);
+	take(&bench);
+	const struct gz_object object = { .technique = illustrate,
+					  .id = 1,
+					  .volume = &bench.scene.volume,
+					  .transfer = &bench.scene.transfer };
+	const struct gz_picture_request request = {
+		.camera = &bench.scene.camera,
+		.settings = &bench.scene.rays,
+		.foveation = &full,
+		.display = &bench.scene.display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = WIDTH,
+		.height = HEIGHT,
+	};
+	assert_int_equal(gz_picture_maker_create(&params, NULL, &maker), GZ_OK);
+	assert_int_equal(gz_picture_maker_show(maker, &object, 1), GZ_OK);
+	assert_int_equal(gz_picture_make(maker, &request, &whole, NULL), GZ_OK);
+	assert_int_equal(image_difference(whole, &bench.image, &x, &y), 0);
+	gz_picture_maker_destroy(&maker);
+	stop(&bench);
+}
+
 TEST_SUITE(reference)
 {
 	const struct CMUnitTest tests[] = {
@@ -196,6 +248,7 @@ TEST_SUITE(reference)
 		cmocka_unit_test(equal_request_is_not_rendered_again),
 		cmocka_unit_test(new_transfer_function_renders_again),
 		cmocka_unit_test(worker_can_stop_at_any_time),
+		cmocka_unit_test(illustration_is_made_whole),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

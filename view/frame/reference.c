@@ -50,13 +50,23 @@ static int reference_threads(const struct gz_reference_source *source)
 	return processors < 1 ? 1 : processors > 256 ? 256 : (int)processors;
 }
 
+/* Rows that are cast at once: all of them where a picture depends on all its pixels. */
+static int rows_of_strip(const struct gz_reference_worker *worker, const struct gz_image *image)
+{
+	for (size_t i = 0; i < worker->source.object_count; i++)
+		if (worker->objects[i].technique->whole_pictures)
+			return image->height;
+	return worker->strip_rows;
+}
+
 static enum gz_result cast_strip(struct gz_reference_worker *worker,
 				 const struct gz_reference_view *view, struct gz_image *image,
 				 int row)
 {
 	const struct gz_foveation foveation = gz_foveation_full();
 	const int left = image->height - row;
-	const int rows = left < worker->strip_rows ? left : worker->strip_rows;
+	const int most = rows_of_strip(worker, image);
+	const int rows = left < most ? left : most;
 	const struct gz_display display = gz_display_default(image->width, rows);
 	const struct gz_picture_request request = {
 		.camera = &view->camera,
@@ -81,12 +91,13 @@ static enum gz_result cast_all(struct gz_reference_worker *worker,
 			       const struct gz_reference_view *view, struct gz_image *image)
 {
 	enum gz_result r = GZ_OK;
+	const int rows = rows_of_strip(worker, image);
 	atomic_store(&worker->rows_asked, image->height);
-	for (int row = 0; row < image->height && r == GZ_OK; row += worker->strip_rows) {
+	for (int row = 0; row < image->height && r == GZ_OK; row += rows) {
 		if (atomic_load(&worker->outdated))
 			return GZ_ERR_CANCELLED;
 		r = cast_strip(worker, view, image, row);
-		atomic_store(&worker->rows_done, row + worker->strip_rows);
+		atomic_store(&worker->rows_done, row + rows);
 	}
 	return r;
 }

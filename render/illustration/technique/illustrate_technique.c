@@ -30,6 +30,7 @@ const struct gz_technique gz_illustrate_technique = {
 	.shows = GZ_OBJECT_VOLUME | GZ_OBJECT_LABELS | GZ_OBJECT_MESH | GZ_OBJECT_PARTICLES,
 	.objects_max = SURFACES_MAX,
 	.backends = illustrate_backends,
+	.whole_pictures = true, /* its histogram is that of all pixels */
 	.sharing = GZ_SHARES_NOT,
 	.check = gz_illustrate_check,
 	.create = gz_illustrate_create,
