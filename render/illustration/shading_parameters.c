@@ -18,8 +18,7 @@ void gz_shading_main_light(const struct gz_shading_vectors *normals, size_t coun
 		values[i] = 0.5F + 0.5F * (lx * x[i] + ly * y[i] + lz * z[i]);
 }
 
-/* Share of light from all around under a plain lamp. Chosen: shaded sides stay visible. */
-#define PLAIN_AMBIENT 0.2F
+#define PLAIN_AMBIENT GZ_SHADING_PLAIN_AMBIENT
 
 void gz_shading_plain_light(const struct gz_shading_vectors *normals, size_t count,
 			    const float light[3], float *out_values)
@@ -71,8 +70,7 @@ static void add_grazing_level(const struct gz_shading_vectors *level, size_t cou
 		const float px = lx - sx * along, py = ly - sy * along, pz = lz - sz * along;
 		const float length2 = px * px + py * py + pz * pz;
 		const float dot = px * n.x[i] + py * n.y[i] + pz * n.z[i];
-		/* Rounding leaves about 1e-7 of a light that falls along the normal. */
-		const float cosine = length2 > 1e-10F ? dot / sqrtf(length2) : 0;
+		const float cosine = length2 > GZ_SHADING_GRAZES_NOT ? dot / sqrtf(length2) : 0;
 		values[i] += weight * (0.5F + 0.5F * clamp_between(exaggeration * cosine, -1, 1));
 	}
 }

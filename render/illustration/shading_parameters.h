@@ -13,12 +13,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "render/illustration/shading_constants.h"
+
 /** Most levels of normals, the surface's own included. */
 #define GZ_SHADING_LEVELS_MAX 9
-
-/** Levels of normals that meshes have (shading_vertices.h): the surface's own and five smoothed
- * ones. Chosen: the last has spread over about six edges, wider than the details of a scan. */
-#define GZ_SHADING_LEVELS 6
 
 /** A unit vector for each of many points, one array for each component. */
 struct gz_shading_vectors {

@@ -15,6 +15,7 @@ static const struct {
 	[GZ_GL_TARGET_COLOUR] = { GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE },
 	[GZ_GL_TARGET_ID] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
 	[GZ_GL_TARGET_VALUE] = { GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT },
+	[GZ_GL_TARGET_VECTOR] = { GL_RGBA32F, GL_RGBA, GL_FLOAT },
 };
 
 static unsigned wanted_planes(const struct gz_gl_target *target)
@@ -95,13 +96,15 @@ void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4]
 {
 	static const GLuint no_id[4] = { 0 };
 	static const GLuint no_value[4] = { INFINITE_BITS };
-	static const GLfloat farthest = 1;
+	static const GLfloat no_vector[4] = { 0 }, farthest = 1;
 	if (target->planes[GZ_GL_TARGET_COLOUR])
 		glClearBufferfv(GL_COLOR, GZ_GL_TARGET_COLOUR, colour);
 	if (target->planes[GZ_GL_TARGET_ID])
 		glClearBufferuiv(GL_COLOR, GZ_GL_TARGET_ID, no_id);
 	if (target->planes[GZ_GL_TARGET_VALUE])
 		glClearBufferuiv(GL_COLOR, GZ_GL_TARGET_VALUE, no_value);
+	if (target->planes[GZ_GL_TARGET_VECTOR])
+		glClearBufferfv(GL_COLOR, GZ_GL_TARGET_VECTOR, no_vector);
 	glClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 

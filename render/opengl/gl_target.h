@@ -17,6 +17,7 @@ enum gz_gl_target_plane {
 	GZ_GL_TARGET_COLOUR, /**< RGBA8 */
 	GZ_GL_TARGET_ID,     /**< R32UI: an object's id; 0 = no object */
 	GZ_GL_TARGET_VALUE,  /**< R32UI: the bits of a float */
+	GZ_GL_TARGET_VECTOR, /**< RGBA32F: four numbers of a technique's own */
 	GZ_GL_TARGET_PLANES,
 };
 
@@ -44,10 +45,11 @@ enum gz_result gz_gl_target_reserve(struct gz_gl_target *target, const struct gz
 void gz_gl_target_begin(const struct gz_gl_target *target);
 
 /** Clear all planes: colour to @p colour (R, G, B, A in [0, 1]), ids to 0, values to infinity,
- * depth to the farthest. Call it after begin. */
+ * vectors to 0, depth to the farthest. Call it after begin. */
 void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4]);
 
-/** Read a plane back: target->width x target->height words of 32 bits, row 0 is the bottom one. */
+/** Read a plane back: target->width x target->height words of 32 bits, or vectors of four, row 0 is
+ * the bottom one. */
 void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,
 		       uint32_t *out_words);
 

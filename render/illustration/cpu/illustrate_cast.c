@@ -8,12 +8,6 @@ enum { RAYS = GZ_ILLUSTRATE_RAYS, PARAMETERS_MAX = 6 };
 
 #define NO_LOOK UINT32_MAX
 
-/* By how much of its length a ray goes on behind a surface. Chosen: Embree finds places to some
- * 2^-22 of it, and thinner layers cannot be seen. */
-#define ONWARD (1.0F / (1 << 18))
-/* And at least so far, or a ray that begins on a surface would stay there. */
-#define ONWARD_LEAST_MM 1e-6F
-
 /* What shading reads of each ray's end. */
 struct shading_lanes {
 	float normals[GZ_SHADING_LEVELS][3][RAYS];
@@ -142,7 +136,8 @@ static void interpolate_normals(const struct triangle_place *place,
 		const float square =
 			normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
 		const float steps = GZ_ILLUSTRATE_NORMAL_STEPS;
-		for (int axis = 0; axis < 3 && !(square > 1e-8F * steps * steps); axis++)
+		for (int axis = 0; axis < 3 && !(square > GZ_SHADING_NO_NORMAL * steps * steps);
+		     axis++)
 			normals[level][axis] = a->normals[level][axis];
 	}
 }
@@ -333,7 +328,8 @@ static bool go_on(const struct gz_illustrate_cast *cast, struct illustrate_packe
 		packet->valid[i] = through ? -1 : 0;
 		any = any || through;
 		if (through)
-			ray->tnear[i] = ray->tfar[i] * (1 + ONWARD) + ONWARD_LEAST_MM;
+			ray->tnear[i] = ray->tfar[i] * (1 + GZ_ILLUSTRATE_ONWARD) +
+					GZ_ILLUSTRATE_ONWARD_LEAST_MM;
 		ray->tfar[i] = packet->ends[i];
 		packet->hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
 	}

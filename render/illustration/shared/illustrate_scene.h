@@ -12,13 +12,10 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "base/workers.h"
-#include "render/illustration/shading_parameters.h"
+#include "render/illustration/shading_constants.h"
 #include "render/illustration/shared/illustrate_marks.h"
 #include "render/illustration/shared/illustrate_shot.h"
 #include "render/surface/shared/surface_meshes.h"
-
-/** Most layers of surfaces behind each other that show. Chosen: more cannot be told apart. */
-#define GZ_ILLUSTRATE_LAYERS_MAX 4
 
 /** Steps of a normal's component from 0 to 1. */
 #define GZ_ILLUSTRATE_NORMAL_STEPS 32767

@@ -7,41 +7,56 @@
 
 #define GZ_LOG_MODULE "isosurface"
 
-enum { POSITIONS, NORMALS, TRIANGLES, BUFFERS };
+enum { POSITIONS, BESIDE, TRIANGLES, BUFFERS };
 
-static size_t vertex_bytes(const struct gz_mesh *mesh)
-{
-	return mesh->vertex_count * sizeof mesh->positions[0];
-}
+static const struct gz_raster_field normal_field = { GZ_RASTER_NORMAL, 3, GL_FLOAT, 0 };
+
+/* What vertices are beside their positions unless the caller has something else. */
+static const struct gz_raster_vertices plain_vertices = { &normal_field, 1, sizeof(float[3]),
+							  NULL };
 
 static size_t triangle_bytes(const struct gz_mesh *mesh)
 {
 	return mesh->triangle_count * sizeof mesh->triangles[0];
 }
 
-static void upload_vertices(unsigned buffer, enum gz_raster_attribute attribute, size_t bytes,
-			    const void *vertices)
+static size_t mesh_bytes(const struct gz_mesh *mesh, const struct gz_raster_vertices *vertices)
 {
-	glBindBuffer(GL_ARRAY_BUFFER, buffer);
-	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)bytes, vertices, GL_STATIC_DRAW);
-	glVertexAttribPointer(attribute, 3, GL_FLOAT, GL_FALSE, 0, NULL);
-	glEnableVertexAttribArray(attribute);
+	return mesh->vertex_count * (sizeof mesh->positions[0] + vertices->stride) +
+	       triangle_bytes(mesh);
 }
 
-static void upload_mesh(struct gz_raster_mesh *item, const struct gz_mesh *mesh)
+static void upload_buffer(GLenum kind, unsigned buffer, size_t bytes, const void *data)
 {
+	glBindBuffer(kind, buffer);
+	glBufferData(kind, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
+}
+
+static void point_to_field(const struct gz_raster_field *field, size_t stride)
+{
+	glVertexAttribPointer(field->location, field->components, field->type, GL_TRUE,
+			      (GLsizei)stride, (const void *)field->offset);
+	glEnableVertexAttribArray(field->location);
+}
+
+static void upload_mesh(struct gz_raster_mesh *item, const struct gz_mesh *mesh,
+			const struct gz_raster_vertices *vertices, const void *beside)
+{
+	static const struct gz_raster_field position = { GZ_RASTER_POSITION, 3, GL_FLOAT, 0 };
 	if (mesh->triangle_count == 0)
 		return;
 	glGenVertexArrays(1, &item->vertices);
 	glGenBuffers(BUFFERS, item->buffers);
 	glBindVertexArray(item->vertices);
-	upload_vertices(item->buffers[POSITIONS], GZ_RASTER_POSITION, vertex_bytes(mesh),
-			mesh->positions);
-	upload_vertices(item->buffers[NORMALS], GZ_RASTER_NORMAL, vertex_bytes(mesh),
-			mesh->normals);
-	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, item->buffers[TRIANGLES]);
-	glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)triangle_bytes(mesh), mesh->triangles,
-		     GL_STATIC_DRAW);
+	upload_buffer(GL_ARRAY_BUFFER, item->buffers[POSITIONS],
+		      mesh->vertex_count * sizeof mesh->positions[0], mesh->positions);
+	point_to_field(&position, sizeof mesh->positions[0]);
+	upload_buffer(GL_ARRAY_BUFFER, item->buffers[BESIDE], mesh->vertex_count * vertices->stride,
+		      beside);
+	for (int i = 0; i < vertices->count; i++)
+		point_to_field(&vertices->fields[i], vertices->stride);
+	upload_buffer(GL_ELEMENT_ARRAY_BUFFER, item->buffers[TRIANGLES], triangle_bytes(mesh),
+		      mesh->triangles);
 	glBindVertexArray(0);
 	glBindBuffer(GL_ARRAY_BUFFER, 0);
 	item->corners = (int)(3 * mesh->triangle_count);
@@ -65,11 +80,13 @@ static struct gz_raster_box find_box(const struct gz_surface_meshes *listed)
 }
 
 static enum gz_result check_room(const struct gz_gl_device *device,
-				 const struct gz_surface_meshes *listed, const struct gz_log *log)
+				 const struct gz_surface_meshes *listed,
+				 const struct gz_raster_vertices *vertices,
+				 const struct gz_log *log)
 {
 	size_t bytes = 0;
 	for (size_t i = 0; i < listed->count; i++)
-		bytes += 2 * vertex_bytes(&listed->shown[i]) + triangle_bytes(&listed->shown[i]);
+		bytes += mesh_bytes(&listed->shown[i], vertices);
 	if (!device->memory_known || bytes <= (size_t)device->memory_max)
 		return GZ_OK;
 	gz_err(log,
@@ -82,10 +99,13 @@ static enum gz_result check_room(const struct gz_gl_device *device,
 enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
 				       const struct gz_gl_device *device,
 				       const struct gz_surface_meshes *listed,
+				       const struct gz_raster_vertices *vertices,
 				       const struct gz_log *log)
 {
 	gz_raster_meshes_free(meshes);
-	enum gz_result result = check_room(device, listed, log);
+	if (!vertices)
+		vertices = &plain_vertices;
+	enum gz_result result = check_room(device, listed, vertices, log);
 	if (result != GZ_OK)
 		return result;
 	meshes->items = calloc(listed->count, sizeof *meshes->items);
@@ -94,7 +114,8 @@ enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
 	meshes->count = listed->count;
 	for (size_t i = 0; i < listed->count; i++) {
 		meshes->items[i].id = listed->items[i].object.id;
-		upload_mesh(&meshes->items[i], &listed->shown[i]);
+		upload_mesh(&meshes->items[i], &listed->shown[i], vertices,
+			    vertices->data ? vertices->data[i] : listed->shown[i].normals);
 	}
 	result = gz_gl_device_errors(device);
 	if (result != GZ_OK) {
@@ -135,6 +156,13 @@ static void draw_shared(const struct gz_raster_mesh *mesh)
 	glDisable(GL_CULL_FACE);
 }
 
+void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh)
+{
+	glBindVertexArray(mesh->vertices);
+	glDrawElements(GL_TRIANGLES, mesh->own_corners, GL_UNSIGNED_INT, NULL);
+	draw_shared(mesh);
+}
+
 void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
 				const struct gz_surface_meshes *listed,
 				const struct gz_surface_look *look,
@@ -148,9 +176,7 @@ void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
 		gz_surface_colour(&listed->items[i], look, colour);
 		glUniform1ui(locations.id, mesh->id);
 		glUniform3fv(locations.colour, 1, colour);
-		glBindVertexArray(mesh->vertices);
-		glDrawElements(GL_TRIANGLES, mesh->own_corners, GL_UNSIGNED_INT, NULL);
-		draw_shared(mesh);
+		gz_raster_mesh_draw_seen(mesh);
 	}
 }
 

@@ -20,10 +20,26 @@
 /** Attributes of a vertex in shaders. */
 enum gz_raster_attribute { GZ_RASTER_POSITION, GZ_RASTER_NORMAL };
 
+/** An attribute that vertices have beside their position. */
+struct gz_raster_field {
+	unsigned location;
+	int components; /**< 1 to 4 */
+	unsigned type;  /**< OpenGL's; whole numbers are read as shares of their greatest one */
+	size_t offset;  /**< bytes from the start of the vertex */
+};
+
+/** What vertices are beside their positions: one struct for each. All pointers are borrowed. */
+struct gz_raster_vertices {
+	const struct gz_raster_field *fields;
+	int count;
+	size_t stride;           /**< bytes of a vertex */
+	const void *const *data; /**< of each mesh */
+};
+
 /** One mesh; OpenGL's names. */
 struct gz_raster_mesh {
 	unsigned vertices;   /**< vertex array; 0: the mesh has no triangles */
-	unsigned buffers[3]; /**< positions, normals, triangles */
+	unsigned buffers[3]; /**< positions, what is beside them, triangles */
 	int corners;         /**< three a triangle */
 	int own_corners;     /**< of triangles that no neighbour has too; they come first */
 	uint32_t id;         /**< of the object */
@@ -41,12 +57,14 @@ struct gz_raster_meshes {
 /**
  * Upload the meshes that are listed, in place of those there are.
  *
+ * @param vertices  NULL: beside positions are the meshes' normals, at GZ_RASTER_NORMAL
  * @retval GZ_ERR_NO_MEM     the device has no room, or the host for the list; logged
  * @retval GZ_ERR_NO_DEVICE  the context is lost; logged
  */
 enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
 				       const struct gz_gl_device *device,
 				       const struct gz_surface_meshes *listed,
+				       const struct gz_raster_vertices *vertices,
 				       const struct gz_log *log);
 
 /** Draw all triangles with the program in use. */
@@ -57,8 +75,11 @@ struct gz_raster_locations {
 	int id, colour;
 };
 
-/** Draw what an eye sees: as gz_raster_meshes_draw(), but triangles that two neighbours share only
- *  from the front, because both lie at the same place. Sets each object's id and colour. */
+/** Draw what an eye sees of a mesh that has triangles: those that two neighbours share only from
+ * the front, because both lie at the same place. */
+void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh);
+
+/** Draw what an eye sees of all meshes. Sets each object's id and colour. */
 void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
 				const struct gz_surface_meshes *listed,
 				const struct gz_surface_look *look,

@@ -11,6 +11,8 @@ extern const char gz_glsl_light_constants_h[];
 extern const char gz_glsl_shine_glsl[];
 extern const char gz_glsl_surface_block_glsl[];
 extern const char gz_glsl_surroundings_glsl[];
+extern const char gz_glsl_raster_place_glsl[];
+extern const char gz_glsl_raster_rays_glsl[];
 extern const char gz_glsl_surface_vert[];
 extern const char gz_glsl_surface_frag[];
 extern const char gz_glsl_behind_vert[];
@@ -72,13 +74,13 @@ void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_
 
 /* What each program is made of. */
 static const struct {
-	const char *vertex_name, *vertex, *fragment_name, *fragment;
+	const char *place, *vertex_name, *vertex, *fragment_name, *fragment;
 } texts[GZ_RASTER_PROGRAMS] = {
-	[GZ_RASTER_SURFACE] = { "surface.vert", gz_glsl_surface_vert, "surface.frag",
-				gz_glsl_surface_frag },
-	[GZ_RASTER_BEHIND] = { "behind.vert", gz_glsl_behind_vert, "behind.frag",
+	[GZ_RASTER_SURFACE] = { gz_glsl_raster_place_glsl, "surface.vert", gz_glsl_surface_vert,
+				"surface.frag", gz_glsl_surface_frag },
+	[GZ_RASTER_BEHIND] = { "", "behind.vert", gz_glsl_behind_vert, "behind.frag",
 			       gz_glsl_behind_frag },
-	[GZ_RASTER_SHADOW] = { "shadow.vert", gz_glsl_shadow_vert, "shadow.frag",
+	[GZ_RASTER_SHADOW] = { "", "shadow.vert", gz_glsl_shadow_vert, "shadow.frag",
 			       gz_glsl_shadow_frag },
 };
 
@@ -89,7 +91,7 @@ void gz_raster_shaders(enum gz_raster_program program, struct gz_gl_shader out_s
 		.name = texts[program].vertex_name,
 		.parts = { numbers, gz_gl_surroundings_numbers, gz_glsl_light_constants_h,
 			   gz_glsl_surroundings_glsl, gz_glsl_surface_block_glsl,
-			   texts[program].vertex },
+			   texts[program].place, texts[program].vertex },
 		.with_430 = true,
 	};
 	out_shaders[1] = (struct gz_gl_shader) {
@@ -97,7 +99,8 @@ void gz_raster_shaders(enum gz_raster_program program, struct gz_gl_shader out_s
 		.name = texts[program].fragment_name,
 		.parts = { numbers, gz_gl_surroundings_numbers, gz_glsl_light_constants_h,
 			   gz_glsl_shine_glsl, gz_glsl_surroundings_glsl,
-			   gz_glsl_surface_block_glsl, texts[program].fragment },
+			   gz_glsl_surface_block_glsl, gz_glsl_raster_rays_glsl,
+			   texts[program].fragment },
 		.with_430 = true,
 	};
 }

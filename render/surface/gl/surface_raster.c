@@ -151,7 +151,7 @@ static enum gz_result prepare_meshes(struct rastering *rastering)
 	if (result != GZ_OK || (raster->meshes.uploaded && !new_meshes))
 		return result;
 	const int64_t made_ns = gz_clock_now_ns();
-	result = gz_raster_meshes_upload(&raster->meshes, &raster->device, &raster->surfaces,
+	result = gz_raster_meshes_upload(&raster->meshes, &raster->device, &raster->surfaces, NULL,
 					 raster->log);
 	rastering->prepare_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	gz_debug(raster->log, "%zu triangles: surfaces %.0f ms, upload %.0f ms",

@@ -15,15 +15,3 @@ layout(std140, binding = BLOCK) uniform Surface
 	ivec4 are;                          // whether there are glass, shadows
 	Surroundings around;
 };
-
-// The ray of a pixel.
-vec3 origin_of(vec2 pixel)
-{
-	return fma(vec3(pixel.y), origin_dy.xyz, fma(vec3(pixel.x), origin_dx.xyz, origin00.xyz));
-}
-
-vec3 direction_of(vec2 pixel)
-{
-	return normalize(
-		fma(vec3(pixel.y), direction_dy.xyz, fma(vec3(pixel.x), direction_dx.xyz, direction00.xyz)));
-}
