@@ -330,7 +330,9 @@ static bool go_on(const struct gz_illustrate_cast *cast, struct illustrate_packe
 		if (through)
 			ray->tnear[i] = ray->tfar[i] * (1 + GZ_ILLUSTRATE_ONWARD) +
 					GZ_ILLUSTRATE_ONWARD_LEAST_MM;
-		ray->tfar[i] = packet->ends[i];
+		/* An empty ray, too: where meshes have filters, Embree follows some that are not
+		 * valid. */
+		ray->tfar[i] = through ? packet->ends[i] : -INFINITY;
 		packet->hit.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
 	}
 	return any;
