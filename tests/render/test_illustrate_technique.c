@@ -300,10 +300,11 @@ static void unknown_backends_are_refused_by_name(void **state)
 	const struct gz_backend_params params = { 0 };
 	struct gz_drawer *drawer = NULL;
 	captured_log_init(&heard, NULL);
-	assert_int_equal(gz_illustrate_technique.check("gl", &params, &heard.log),
+	assert_int_equal(gz_illustrate_technique.check("vulkan", &params, &heard.log),
 			 GZ_ERR_NOT_FOUND);
-	assert_non_null(strstr(heard.last, "'gl'"));
-	assert_int_equal(gz_illustrate_technique.create("gl", &params, &heard.log, &drawer),
+	assert_non_null(strstr(heard.last, "'vulkan'"));
+	assert_non_null(strstr(heard.last, "gl, cpu"));
+	assert_int_equal(gz_illustrate_technique.create("vulkan", &params, &heard.log, &drawer),
 			 GZ_ERR_NOT_FOUND);
 	assert_null(drawer);
 }

@@ -40,8 +40,8 @@ const struct gz_option gz_view_option_table[] = {
 	{ "technique", GZ_OPTION_CHOICE, AT(technique), .choices = gz_technique_choices,
 	  .help = "short for --render.technique: how everything is drawn" },
 	{ "backend", GZ_OPTION_STRING, AT(backend), .max = GZ_NAME_SIZE, .preset = "auto",
-	  .help = "what draws: cpu, gl (OpenGL 4.3), or auto (gl if a GPU provides it; surfaces: "
-		  "cpu)" },
+	  .help = "what draws: cpu, gl (OpenGL 4.3), or auto (gl if a GPU provides it; surfaces "
+		  "and illustrations: cpu)" },
 	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
 	  .help = "threads of the cpu backend; 0: one per processor" },
 	{ "simd", GZ_OPTION_STRING, AT(simd), .max = GZ_NAME_SIZE, .preset = "auto",

@@ -12,8 +12,8 @@ enum gz_result gz_illustrate_caster_check(const struct gz_backend_params *params
 					  const struct gz_log *log)
 {
 	(void)params;
-	gz_err(log, "illustrations are not in this build, because it was made without Embree; "
-		    "install it (libembree-dev) and build again");
+	gz_err(log, "illustrations by rays are not in this build, because it was made without "
+		    "Embree; install it (libembree-dev) and build again, or take --backend gl");
 	return GZ_ERR_UNSUPPORTED;
 }
 

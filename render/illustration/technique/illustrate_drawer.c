@@ -1,19 +1,21 @@
-/* The technique's drawer: a caster, and what it shows. */
+/* The technique's drawer: a caster of rays or a rasteriser, and what it shows. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/illustration/cpu/illustrate_caster.h"
+#include "render/illustration/gl/illustrate_raster.h"
 #include "render/illustration/technique/illustrate_technique.h"
 #include "render/raycast/shared/ray_params.h"
 
 #define GZ_LOG_MODULE "illustrate"
 
-static const char cpu_name[] = "cpu";
+static const char cpu_name[] = "cpu", gl_name[] = "gl";
 
 struct illustrate_drawer {
 	struct gz_drawer base;
-	struct gz_illustrate_caster *caster;
-	struct gz_object *objects; /* shown */
+	struct gz_illustrate_raster *raster; /* NULL: the backend is cpu */
+	struct gz_illustrate_caster *caster; /* NULL: the backend is gl */
+	struct gz_object *objects;           /* shown */
 	size_t count;
 };
 
@@ -35,7 +37,9 @@ static enum gz_result illustrate_show(struct gz_drawer *drawer, const struct gz_
 	if (!copy)
 		return GZ_ERR_NO_MEM;
 	memcpy(copy, objects, count * sizeof *copy);
-	const enum gz_result result = gz_illustrate_caster_show(self->caster, objects, count);
+	const enum gz_result result =
+		self->raster ? gz_illustrate_raster_show(self->raster, objects, count)
+			     : gz_illustrate_caster_show(self->caster, objects, count);
 	if (result != GZ_OK) {
 		free(copy);
 		return result;
@@ -60,7 +64,7 @@ static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_
 {
 	const struct illustrate_drawer *self = illustrate_read(drawer);
 	const struct gz_ray_params *rays = shot->settings;
-	if (!image || !gz_ray_params_valid(rays))
+	if ((!image && !self->raster) || !gz_ray_params_valid(rays))
 		return GZ_ERR_INVAL;
 	const struct gz_illustrate_shot illustrated = {
 		.camera = shot->camera,
@@ -70,36 +74,40 @@ static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_
 		.isovalue = rays->surface.isovalue,
 		.chosen_id = find_named_object(self, rays->illustration.chosen_object),
 	};
+	if (self->raster)
+		return gz_illustrate_raster_draw(self->raster, &illustrated, image, NULL,
+						 out_stats);
 	return gz_illustrate_caster_draw(self->caster, &illustrated, image, NULL, out_stats);
 }
 
 static bool illustrate_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
 	(void)shot;
-	(void)drawer;
-	return false;
+	return illustrate_read(drawer)->raster;
 }
 
 static unsigned illustrate_picture_texture(const struct gz_drawer *drawer)
 {
-	(void)drawer;
-	return 0;
+	const struct illustrate_drawer *self = illustrate_read(drawer);
+	return self->raster ? gz_illustrate_raster_picture(self->raster) : 0;
 }
 
 static const char *illustrate_backend(const struct gz_drawer *drawer)
 {
-	(void)drawer;
-	return cpu_name;
+	return illustrate_read(drawer)->raster ? gl_name : cpu_name;
 }
 
 static const char *illustrate_describe(const struct gz_drawer *drawer)
 {
-	return gz_illustrate_caster_describe(illustrate_read(drawer)->caster);
+	const struct illustrate_drawer *self = illustrate_read(drawer);
+	return self->raster ? gz_illustrate_raster_describe(self->raster)
+			    : gz_illustrate_caster_describe(self->caster);
 }
 
 static void illustrate_destroy(struct gz_drawer *drawer)
 {
 	struct illustrate_drawer *self = illustrate_of(drawer);
+	gz_illustrate_raster_destroy(&self->raster);
 	gz_illustrate_caster_destroy(&self->caster);
 	free(self->objects);
 	free(self);
@@ -115,16 +123,27 @@ static const struct gz_drawer_ops illustrate_ops = {
 	.destroy = illustrate_destroy,
 };
 
+/* Whether a backend, known or "auto", is gl. */
+static bool takes_gl(const char *backend)
+{
+	if (!backend || strcmp(backend, "auto") == 0)
+		return !gz_illustrate_caster_present();
+	return strcmp(backend, gl_name) == 0;
+}
+
 enum gz_result gz_illustrate_check(const char *backend, const struct gz_backend_params *params,
 				   const struct gz_log *log)
 {
 	static const struct gz_backend_params defaults = { 0 };
 	const bool known = !backend || strcmp(backend, "auto") == 0 ||
 			   gz_technique_has_backend(&gz_illustrate_technique, backend);
-	if (known)
-		return gz_illustrate_caster_check(params ? params : &defaults, log);
-	gz_err(log, "illustrate has no backend '%s': there are auto, %s", backend, cpu_name);
-	return GZ_ERR_NOT_FOUND;
+	if (!known) {
+		gz_err(log, "illustrate has no backend '%s': there are auto, %s, %s", backend,
+		       gl_name, cpu_name);
+		return GZ_ERR_NOT_FOUND;
+	}
+	return takes_gl(backend) ? GZ_OK
+				 : gz_illustrate_caster_check(params ? params : &defaults, log);
 }
 
 enum gz_result gz_illustrate_create(const char *backend, const struct gz_backend_params *params,
@@ -137,7 +156,8 @@ enum gz_result gz_illustrate_create(const char *backend, const struct gz_backend
 	if (!self)
 		return GZ_ERR_NO_MEM;
 	self->base.ops = &illustrate_ops;
-	result = gz_illustrate_caster_create(params, log, &self->caster);
+	result = takes_gl(backend) ? gz_illustrate_raster_create(params, log, &self->raster)
+				   : gz_illustrate_caster_create(params, log, &self->caster);
 	if (result != GZ_OK) {
 		free(self);
 		return result;

@@ -21,7 +21,7 @@ static size_t illustrate_bind(void *settings, struct gz_option_binding *out_bind
 	return OWN;
 }
 
-static const char *const illustrate_backends[] = { "cpu", NULL };
+static const char *const illustrate_backends[] = { "gl", "cpu", NULL };
 
 const struct gz_technique gz_illustrate_technique = {
 	.name = "illustrate",

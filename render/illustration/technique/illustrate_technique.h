@@ -8,7 +8,7 @@
 #include "render/technique/technique.h"
 
 /** Its settings are a struct gz_ray_params, of which it uses illustration, clip and
- *  surface.isovalue. Its only backend is cpu; in a build without Embree that returns
+ *  surface.isovalue. "auto" is cpu, or gl in a build without Embree; there cpu returns
  *  GZ_ERR_UNSUPPORTED and logs what is missing. */
 extern const struct gz_technique gz_illustrate_technique;
 

@@ -1,0 +1,460 @@
+#include "render/illustration/gl/illustrate_raster.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <GL/glew.h>
+
+#include "base/clock.h"
+#include "base/workers.h"
+#include "render/illustration/gl/illustrate_programs.h"
+#include "render/illustration/shared/illustrate_frame.h"
+#include "render/illustration/shared/illustrate_picture.h"
+#include "render/illustration/shared/illustrate_scene.h"
+#include "render/layers/gl_layers.h"
+#include "render/opengl/gl_target.h"
+#include "render/surface/gl/raster_meshes.h"
+#include "render/surface/gl/raster_view.h"
+
+#define GZ_LOG_MODULE "illustration"
+
+/* Moments of a frame. */
+enum { MARK_START, MARK_FOUND };
+
+/* Distances of gl_ClipDistance that the vertex shader writes. */
+enum { CLIP_DISTANCES = 6 };
+
+static const char remedy[] = "use --backend cpu";
+
+struct gz_illustrate_raster {
+	const struct gz_log *log;
+	struct gz_gl_device device;
+	struct gz_workers *workers; /* make surfaces, and compose the picture */
+	struct gz_illustrate_scene scene;
+	struct gz_illustrate_frame frame;
+	struct gz_illustrate_picture picture;
+	struct gz_image kept; /* a picture that goes back to the device */
+	struct gz_raster_meshes meshes;
+	uint64_t uploaded; /* scene.made when they were; 0: never */
+	struct gz_illustrate_programs programs;
+	struct gz_gl_layers lattices;
+	/* Of a layer of surfaces and of the one before, in turn. */
+	struct gz_gl_target targets[2][GZ_PLAN_RECTANGLES_MAX];
+	struct gz_gl_points found; /* planes of one layer of surfaces */
+	struct gz_gl_buffer block, looks;
+	struct gz_gl_timer timer;
+};
+
+/* What the steps of one picture share. */
+struct illustrate_rastering {
+	struct gz_illustrate_raster *raster;
+	const struct gz_illustrate_shot *shot;
+	bool any; /* something is in view */
+};
+
+static void delete_illustrate_objects(struct gz_illustrate_raster *raster)
+{
+	gz_raster_meshes_free(&raster->meshes);
+	gz_illustrate_programs_free(&raster->programs);
+	gz_gl_layers_free(&raster->lattices);
+	for (int i = 0; i < GZ_PLAN_RECTANGLES_MAX; i++) {
+		gz_gl_target_free(&raster->targets[0][i]);
+		gz_gl_target_free(&raster->targets[1][i]);
+	}
+	gz_gl_points_free(&raster->found);
+	gz_gl_buffer_free(&raster->block);
+	gz_gl_buffer_free(&raster->looks);
+	gz_gl_timer_free(&raster->timer);
+}
+
+void gz_illustrate_raster_destroy(struct gz_illustrate_raster **raster)
+{
+	struct gz_illustrate_raster *self = *raster;
+	if (!self)
+		return;
+	if (gz_gl_device_enter(&self->device) == GZ_OK) {
+		delete_illustrate_objects(self);
+		gz_gl_device_leave(&self->device);
+	} else {
+		gz_raster_meshes_forget(&self->meshes);
+	}
+	gz_gl_device_destroy(&self->device);
+	gz_workers_destroy(&self->workers);
+	gz_illustrate_scene_free(&self->scene);
+	gz_illustrate_frame_free(&self->frame);
+	gz_illustrate_picture_close(&self->picture);
+	gz_image_free(&self->kept);
+	free(self);
+	*raster = NULL;
+}
+
+static enum gz_result open_illustrate_raster(struct gz_illustrate_raster *raster,
+					     const struct gz_backend_params *params)
+{
+	const struct gz_gl_setup setup = {
+		.lent = params->gl_context,
+		.hardware_only = params->gl_hardware_only,
+		.memory_bytes = params->gl_memory_bytes,
+	};
+	enum gz_result result = gz_workers_create(params->threads, &raster->workers);
+	if (result != GZ_OK) {
+		gz_err(raster->log, "cannot start %d threads: %s", params->threads,
+		       gz_result_text(result));
+		return result;
+	}
+	result = gz_illustrate_picture_open(&raster->picture);
+	return result == GZ_OK ? gz_gl_device_create(&setup, raster->log, &raster->device) : result;
+}
+
+enum gz_result gz_illustrate_raster_create(const struct gz_backend_params *params,
+					   const struct gz_log *log,
+					   struct gz_illustrate_raster **out_raster)
+{
+	static const struct gz_backend_params defaults = { 0 };
+	struct gz_illustrate_raster *raster = calloc(1, sizeof *raster);
+	if (!raster)
+		return GZ_ERR_NO_MEM;
+	raster->log = raster->scene.log = raster->scene.meshes.log = log;
+	const enum gz_result result = open_illustrate_raster(raster, params ? params : &defaults);
+	if (result != GZ_OK) {
+		gz_illustrate_raster_destroy(&raster);
+		return result;
+	}
+	*out_raster = raster;
+	return GZ_OK;
+}
+
+enum gz_result gz_illustrate_raster_show(struct gz_illustrate_raster *raster,
+					 const struct gz_object *objects, size_t count)
+{
+	return gz_illustrate_scene_show(&raster->scene, objects, count);
+}
+
+/* Upload meshes with what shading reads of their vertices. */
+static enum gz_result upload_illustrated(struct gz_illustrate_raster *raster)
+{
+	struct gz_raster_field fields[GZ_SHADING_LEVELS + 1];
+	const struct gz_illustrate_scene *scene = &raster->scene;
+	const void **data = malloc(scene->count * sizeof *data);
+	if (!data)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < scene->count; i++)
+		data[i] = scene->listed[i].vertices;
+	for (unsigned level = 0; level < GZ_SHADING_LEVELS; level++)
+		fields[level] = (struct gz_raster_field) {
+			.location = GZ_ILLUSTRATE_NORMALS + level,
+			.components = 3,
+			.type = GL_SHORT,
+			.offset = offsetof(struct gz_illustrate_vertex, normals) +
+				  level * sizeof(int16_t[3]),
+		};
+	fields[GZ_SHADING_LEVELS] = (struct gz_raster_field) {
+		.location = GZ_ILLUSTRATE_SCALARS,
+		.components = 3,
+		.type = GL_FLOAT,
+		.offset = offsetof(struct gz_illustrate_vertex, greatest),
+	};
+	const struct gz_raster_vertices vertices = { fields, GZ_SHADING_LEVELS + 1,
+						     sizeof(struct gz_illustrate_vertex), data };
+	raster->uploaded = 0;
+	const enum gz_result result = gz_raster_meshes_upload(
+		&raster->meshes, &raster->device, &scene->meshes, &vertices, raster->log);
+	if (result == GZ_OK)
+		raster->uploaded = scene->made;
+	free(data);
+	return result;
+}
+
+_Static_assert(offsetof(struct gz_illustrate_vertex, least) ==
+			       offsetof(struct gz_illustrate_vertex, greatest) + sizeof(float) &&
+		       offsetof(struct gz_illustrate_vertex, distance_mm) ==
+			       offsetof(struct gz_illustrate_vertex, least) + sizeof(float),
+	       "shaders read three numbers side by side");
+
+/* Make room on the device for the lattices and for what is found on them. */
+static enum gz_result prepare_lattices(struct illustrate_rastering *rastering)
+{
+	struct gz_illustrate_raster *raster = rastering->raster;
+	struct gz_gl_layers *lattices = &raster->lattices;
+	const struct gz_plan *plan = rastering->shot->plan;
+	const size_t words =
+		(size_t)raster->picture.plane_count * (size_t)plan->width * (size_t)plan->height;
+	enum gz_result result = gz_illustrate_programs_make(&raster->programs, raster->log);
+	if (result == GZ_OK)
+		result = gz_gl_layers_prepare(lattices, &raster->device, plan, remedy, raster->log);
+	for (int k = 0; k < (raster->picture.layers > 1 ? 2 : 1); k++)
+		for (int i = 0; i < lattices->count && result == GZ_OK; i++)
+			result = gz_gl_target_reserve(&raster->targets[k][i], &raster->device,
+						      1U << GZ_GL_TARGET_VECTOR,
+						      lattices->items[i].points[0],
+						      lattices->items[i].points[1], raster->log);
+	if (result != GZ_OK)
+		return result;
+	result = gz_gl_points_prepare(&raster->found, &raster->device, words);
+	if (result != GZ_OK)
+		gz_err(raster->log,
+		       "the graphics device has no room for %d planes of %d x %d px; %s",
+		       raster->picture.plane_count, plan->width, plan->height, remedy);
+	return result;
+}
+
+static enum gz_result fill_looks(struct gz_illustrate_raster *raster)
+{
+	const size_t count = raster->scene.template_count;
+	struct gz_illustrate_shader_look *looks = malloc(count * sizeof *looks);
+	if (!looks)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < count; i++)
+		gz_illustrate_shader_look_fill(&raster->frame.looks[i], &looks[i]);
+	gz_gl_buffer_reserve(&raster->looks, count * sizeof *looks, GL_STREAM_DRAW);
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, raster->looks.name);
+	glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *looks), looks);
+	glBindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+	free(looks);
+	return GZ_OK;
+}
+
+/* The part of the meshes' box that the clip box leaves. */
+static struct gz_raster_box illustrated_box(const struct gz_illustrate_raster *raster)
+{
+	const struct gz_illustrate_frame *frame = &raster->frame;
+	struct gz_raster_box box = raster->meshes.box;
+	for (int axis = 0; axis < 3 && frame->clipped; axis++) {
+		box.least[axis] = fmax(box.least[axis], (double)frame->clip_least[axis]);
+		box.greatest[axis] = fmin(box.greatest[axis], (double)frame->clip_greatest[axis]);
+	}
+	return box;
+}
+
+/* Give the shaders the numbers of the frame. */
+static enum gz_result fill_numbers(struct illustrate_rastering *rastering,
+				   const struct gz_ray_frame *rays)
+{
+	struct gz_illustrate_raster *raster = rastering->raster;
+	const double world_mm = raster->scene.meshes.world_mm;
+	const struct gz_raster_box box = illustrated_box(raster);
+	struct gz_raster_view view = { 0 };
+	struct gz_illustrate_block block;
+	rastering->any = gz_raster_view_make(rays, world_mm, &box, &view);
+	gz_illustrate_block_fill(&raster->frame, rays, world_mm, &view, &block);
+	gz_gl_buffer_reserve(&raster->block, sizeof block, GL_STREAM_DRAW);
+	glBindBuffer(GL_UNIFORM_BUFFER, raster->block.name);
+	glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof block, &block);
+	glBindBuffer(GL_UNIFORM_BUFFER, 0);
+	return fill_looks(raster);
+}
+
+static void set_illustrate_clipping(bool on)
+{
+	for (GLenum i = 0; i < CLIP_DISTANCES; i++)
+		if (on)
+			glEnable(GL_CLIP_DISTANCE0 + i);
+		else
+			glDisable(GL_CLIP_DISTANCE0 + i);
+}
+
+/* Draw the meshes of a layer of surfaces. The last one has what is opaque alone. */
+static void draw_illustrated(const struct gz_illustrate_raster *raster, int layer)
+{
+	const bool opaque_alone = layer > 0 && layer + 1 == raster->picture.layers;
+	for (size_t i = 0; i < raster->meshes.count; i++) {
+		const struct gz_illustrate_mesh *mesh = &raster->scene.listed[i];
+		if (!raster->meshes.items[i].vertices || (opaque_alone && mesh->transparent))
+			continue;
+		glUniform3i(GZ_ILLUSTRATE_OBJECT, (GLint)mesh->id, (GLint)mesh->look,
+			    mesh->transparent);
+		gz_raster_mesh_draw_seen(&raster->meshes.items[i]);
+	}
+}
+
+/* Find a layer of surfaces on a lattice. */
+static void find_on_lattice(const struct illustrate_rastering *rastering, int layer, int index)
+{
+	static const float unused[4] = { 0 };
+	const struct gz_illustrate_raster *raster = rastering->raster;
+	const struct gz_raster_layer *lattice = &raster->lattices.items[index];
+	const struct gz_gl_target *target = &raster->targets[layer % 2][index];
+	const struct gz_gl_target *before = &raster->targets[(layer + 1) % 2][index];
+	gz_gl_target_begin(target);
+	gz_gl_target_clear(target, unused);
+	gz_gl_layer_begin(lattice);
+	if (!rastering->any)
+		return;
+	glUseProgram(raster->programs.names[GZ_ILLUSTRATE_SURFACE]);
+	glBindBufferBase(GL_UNIFORM_BUFFER, GZ_GL_BLOCK_TECHNIQUE, raster->block.name);
+	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_ILLUSTRATE_STORAGE_LOOKS, raster->looks.name);
+	glActiveTexture(GL_TEXTURE0 + GZ_ILLUSTRATE_UNIT_BEFORE);
+	glBindTexture(GL_TEXTURE_2D, layer > 0 ? before->planes[GZ_GL_TARGET_VECTOR] : 0);
+	glUniform3f(GZ_ILLUSTRATE_LATTICE, (float)lattice->from[0], (float)lattice->from[1],
+		    (float)lattice->spacing);
+	glUniform2f(GZ_ILLUSTRATE_POINTS, (float)lattice->points[0], (float)lattice->points[1]);
+	glUniform1i(GZ_ILLUSTRATE_BEHIND, layer > 0);
+	set_illustrate_clipping(raster->frame.clipped);
+	draw_illustrated(raster, layer);
+	set_illustrate_clipping(false);
+	glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+/* Find a layer of surfaces, and make its planes on the device. */
+static void find_layer(const struct illustrate_rastering *rastering, int layer)
+{
+	const struct gz_illustrate_raster *raster = rastering->raster;
+	unsigned textures[GZ_PLAN_RECTANGLES_MAX] = { 0 };
+	for (int i = 0; i < raster->lattices.count; i++) {
+		find_on_lattice(rastering, layer, i);
+		textures[i] = raster->targets[layer % 2][i].planes[GZ_GL_TARGET_VECTOR];
+	}
+	glUseProgram(raster->programs.names[GZ_ILLUSTRATE_PLANES]);
+	glUniform1i(GZ_GL_LAYERS_OWN, raster->picture.plane_count);
+	gz_gl_layers_run(&raster->lattices, textures, &raster->found);
+}
+
+/* Copy the planes of a layer to the host. */
+static enum gz_result read_layer(struct gz_illustrate_raster *raster, int layer)
+{
+	const struct gz_illustrate_picture *picture = &raster->picture;
+	const size_t plane_bytes =
+		sizeof(uint32_t) * (size_t)raster->lattices.width * (size_t)raster->lattices.height;
+	const size_t bytes = (size_t)picture->plane_count * plane_bytes;
+	gz_gl_buffer_bring(&raster->device, &raster->found.points, bytes, &raster->found.staging);
+	const char *words =
+		glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
+	for (int i = 0; words && i < picture->plane_count; i++)
+		memcpy(picture->planes[layer][i].words, words + (size_t)i * plane_bytes,
+		       plane_bytes);
+	if (words)
+		glUnmapBuffer(GL_COPY_READ_BUFFER);
+	enum gz_result result = gz_gl_device_errors(&raster->device);
+	if (result == GZ_OK && !words)
+		result = GZ_ERR_NO_MEM;
+	if (result != GZ_OK)
+		gz_err(raster->log, "%s failed a frame: %s; %s", raster->device.description,
+		       result == GZ_ERR_NO_DEVICE ? "the context is lost" : gz_result_text(result),
+		       remedy);
+	return result;
+}
+
+/* Find all layers of surfaces. */
+static enum gz_result find_layers(const struct illustrate_rastering *rastering)
+{
+	struct gz_illustrate_raster *raster = rastering->raster;
+	const struct gz_gl_outer_state outer = gz_gl_outer_state_leave();
+	enum gz_result result = GZ_OK;
+	gz_gl_timer_mark(&raster->timer, &raster->device, MARK_START);
+	for (int layer = 0; layer < raster->picture.layers && result == GZ_OK; layer++) {
+		find_layer(rastering, layer);
+		if (layer + 1 == raster->picture.layers)
+			gz_gl_timer_mark(&raster->timer, &raster->device, MARK_FOUND);
+		result = read_layer(raster, layer);
+	}
+	gz_gl_outer_state_return(&outer);
+	return result;
+}
+
+/* Compose the picture, and bring it back to the device if it is wanted there. */
+static enum gz_result compose_found(struct gz_illustrate_raster *raster, struct gz_image *image,
+				    const struct gz_illustrate_planes *planes)
+{
+	struct gz_image *composed = image ? image : &raster->kept;
+	const enum gz_result result =
+		gz_illustrate_picture_compose(&raster->picture, &raster->scene, &raster->frame,
+					      raster->workers, composed, planes);
+	if (result != GZ_OK || image)
+		return result;
+	glBindBuffer(GL_COPY_WRITE_BUFFER, raster->lattices.picture.points.name);
+	glBufferSubData(
+		GL_COPY_WRITE_BUFFER, 0,
+		(GLsizeiptr)(sizeof(uint32_t) * (size_t)composed->width * (size_t)composed->height),
+		gz_image_words(composed));
+	glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+	return gz_gl_layers_deliver(&raster->lattices, &raster->device, NULL, raster->log);
+}
+
+/* Make the objects' surfaces, and room for the picture on the host. */
+static enum gz_result prepare_host(struct illustrate_rastering *rastering, struct gz_image *image)
+{
+	struct gz_illustrate_raster *raster = rastering->raster;
+	const struct gz_illustrate_shot *shot = rastering->shot;
+	struct gz_ray_frame camera;
+	enum gz_result result = gz_camera_rays(shot->camera, shot->plan->view.width,
+					       shot->plan->view.height, &camera);
+	if (result == GZ_OK)
+		result = gz_illustrate_scene_prepare(&raster->scene, shot, raster->workers);
+	if (result == GZ_OK)
+		result = gz_illustrate_picture_prepare(&raster->picture, &raster->scene, shot);
+	if (result == GZ_OK)
+		result = gz_illustrate_frame_make(&raster->scene, shot, &camera, &raster->frame);
+	return result == GZ_OK ? gz_image_resize(image ? image : &raster->kept, shot->plan->width,
+						 shot->plan->height)
+			       : result;
+}
+
+/* Draw on the device, whose context is current. */
+static enum gz_result draw_illustrated_frame(struct illustrate_rastering *rastering,
+					     struct gz_image *image,
+					     const struct gz_illustrate_planes *planes,
+					     int64_t start_ns, struct gz_frame_stats *out_stats)
+{
+	struct gz_illustrate_raster *raster = rastering->raster;
+	const bool new_meshes = raster->uploaded != raster->scene.made;
+	struct gz_ray_frame rays;
+	enum gz_result result = gz_plan_rays(rastering->shot->plan, rastering->shot->camera, &rays);
+	if (result == GZ_OK && new_meshes)
+		result = upload_illustrated(raster);
+	const int64_t uploaded_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = prepare_lattices(rastering);
+	if (result == GZ_OK)
+		result = fill_numbers(rastering, &rays);
+	if (result == GZ_OK)
+		result = find_layers(rastering);
+	const int64_t found_ns = gz_clock_now_ns();
+	if (result == GZ_OK)
+		result = compose_found(raster, image, planes);
+	if (result != GZ_OK || !out_stats)
+		return result;
+	const double prepare_ms = new_meshes ? gz_ns_to_ms(uploaded_ns - start_ns) : 0;
+	*out_stats = (struct gz_frame_stats) {
+		.rays = gz_gl_layers_drawn(&raster->lattices),
+		.prepare_ms = prepare_ms,
+		.prepare_within_ms = prepare_ms,
+		.cast_ms = gz_ns_to_ms(found_ns - uploaded_ns),
+		.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - found_ns),
+		.gpu_ms = raster->device.software ? NAN
+						  : gz_gl_timer_ms(&raster->timer, &raster->device,
+								   MARK_START, MARK_FOUND),
+	};
+	return result;
+}
+
+enum gz_result gz_illustrate_raster_draw(struct gz_illustrate_raster *raster,
+					 const struct gz_illustrate_shot *shot,
+					 struct gz_image *image,
+					 const struct gz_illustrate_planes *planes,
+					 struct gz_frame_stats *out_stats)
+{
+	struct illustrate_rastering rastering = { .raster = raster, .shot = shot };
+	const int64_t start_ns = gz_clock_now_ns();
+	enum gz_result result = prepare_host(&rastering, image);
+	if (result != GZ_OK)
+		return result;
+	result = gz_gl_device_enter(&raster->device);
+	if (result != GZ_OK) {
+		gz_err(raster->log, "the OpenGL context cannot be used any more");
+		return result;
+	}
+	result = draw_illustrated_frame(&rastering, image, planes, start_ns, out_stats);
+	gz_gl_device_leave(&raster->device);
+	return result;
+}
+
+unsigned gz_illustrate_raster_picture(const struct gz_illustrate_raster *raster)
+{
+	return raster->lattices.picture.picture;
+}
+
+const char *gz_illustrate_raster_describe(const struct gz_illustrate_raster *raster)
+{
+	return raster->device.description;
+}
