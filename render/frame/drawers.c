@@ -246,6 +246,27 @@ enum gz_result gz_drawers_draw(struct gz_drawers *drawers, const struct gz_shot 
 	return result;
 }
 
+/* One technique of a picture has objects behind each other, so the nearer pick is all that shows.
+ */
+enum gz_result gz_drawers_pick(struct gz_drawers *drawers, const struct gz_pick_request *request,
+			       struct gz_pick *out_pick)
+{
+	struct gz_pick nearest = { 0 }, pick;
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < drawers->count && result == GZ_OK; i++) {
+		struct gz_drawer *drawer = drawers->items[i].drawer;
+		if (!drawer->ops->pick)
+			continue;
+		result = drawer->ops->pick(drawer, request, &pick);
+		if (result == GZ_OK && pick.count > 0 &&
+		    (nearest.count == 0 || pick.depths[0] < nearest.depths[0]))
+			nearest = pick;
+	}
+	if (result == GZ_OK)
+		*out_pick = nearest;
+	return result;
+}
+
 enum gz_result gz_drawers_take_cpu(struct gz_drawers *drawers)
 {
 	struct gz_technique_drawer *last = &drawers->items[drawers->count - 1];

@@ -55,6 +55,11 @@ struct gz_drawer *gz_drawers_last(const struct gz_drawers *drawers);
 enum gz_result gz_drawers_draw(struct gz_drawers *drawers, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats);
 
+/** Find what is at a place of a picture, among the objects of the techniques that can tell.
+ *  @return what gz_drawer_ops.pick returns */
+enum gz_result gz_drawers_pick(struct gz_drawers *drawers, const struct gz_pick_request *request,
+			       struct gz_pick *out_pick);
+
 /** Let cpu draw in place of the last drawer's backend. */
 enum gz_result gz_drawers_take_cpu(struct gz_drawers *drawers);
 

@@ -366,6 +366,15 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 	return GZ_OK;
 }
 
+enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
+				     const struct gz_pick_request *request,
+				     struct gz_pick *out_pick)
+{
+	return gz_drawers_last(&maker->drawers)
+		       ? gz_drawers_pick(&maker->drawers, request, out_pick)
+		       : GZ_ERR_INVAL;
+}
+
 unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker)
 {
 	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);

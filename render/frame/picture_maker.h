@@ -142,6 +142,18 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 			       const struct gz_picture_request *request,
 			       struct gz_image **out_image, struct gz_picture_cost *out_cost);
 
+/**
+ * Find what is at a place of a picture of what is shown. Volumes of rays and slices are not found:
+ * they have no surface.
+ *
+ * @param[out] out_pick  empty: nothing is found there
+ * @retval GZ_ERR_INVAL  nothing is shown, or a value is out of range; not logged
+ * @return otherwise the failures of gz_picture_make()
+ */
+enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
+				     const struct gz_pick_request *request,
+				     struct gz_pick *out_pick);
+
 /** OpenGL's name of the texture with the last picture that stayed on the device, valid until the
  * next picture. 0: none. */
 unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker);

@@ -124,6 +124,20 @@ static enum gz_result isosurface_shade(struct gz_drawer *drawer, const struct gz
 			       : result;
 }
 
+static enum gz_result isosurface_pick(struct gz_drawer *drawer,
+				      const struct gz_pick_request *request,
+				      struct gz_pick *out_pick)
+{
+	struct isosurface_drawer *self = isosurface_of(drawer);
+	const struct gz_surface_shot surfaces = {
+		.camera = request->camera,
+		.rays = request->settings,
+	};
+	const enum gz_result result = add_caster(self);
+	return result == GZ_OK ? gz_surface_caster_pick(self->caster, &surfaces, request, out_pick)
+			       : result;
+}
+
 static bool isosurface_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
 	return draws_on_device(isosurface_read(drawer), shot);
@@ -169,6 +183,7 @@ static const struct gz_drawer_ops isosurface_ops = {
 	.draw = isosurface_draw,
 	.cast_hits = isosurface_cast_hits,
 	.shade = isosurface_shade,
+	.pick = isosurface_pick,
 	.take_prepared = isosurface_take_prepared,
 	.keeps_on_device = isosurface_keeps_on_device,
 	.picture_texture = isosurface_picture_texture,

@@ -31,3 +31,12 @@ bool gz_technique_settings_same(const struct gz_technique *technique, const void
 			return false;
 	return true;
 }
+
+uint32_t gz_pick_most_seen(const struct gz_pick *pick)
+{
+	size_t most = 0;
+	for (size_t i = 1; i < pick->count; i++)
+		if (pick->shares[i] > pick->shares[most])
+			most = i;
+	return pick->count > 0 ? pick->ids[most] : 0;
+}

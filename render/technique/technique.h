@@ -110,6 +110,28 @@ struct gz_shot {
 	size_t shade_count;
 };
 
+/** A place of a picture at which objects are looked for. All pointers are borrowed. */
+struct gz_pick_request {
+	const struct gz_camera *camera;
+	const void *settings; /**< as in struct gz_shot */
+	int width, height;    /**< of the picture, px */
+	double x, y;          /**< px from its upper left corner */
+};
+
+/** Most surfaces behind each other at a place. Chosen: as many as illustrations show. */
+#define GZ_PICKS_MAX 4
+
+/** The objects at a place, the nearest first. */
+struct gz_pick {
+	size_t count;
+	uint32_t ids[GZ_PICKS_MAX];
+	double depths[GZ_PICKS_MAX]; /**< along the ray from where it begins, world units */
+	double shares[GZ_PICKS_MAX]; /**< of the light that is seen there, (0, 1] */
+};
+
+/** The object that is seen most at a place; 0: none. */
+uint32_t gz_pick_most_seen(const struct gz_pick *pick);
+
 struct gz_drawer;
 
 /** What a technique must provide to draw. Every table is const and has static storage. One thread
@@ -141,6 +163,10 @@ struct gz_drawer_ops {
 	 *  same shot, of which hits and shades must not be read. Fails as draw does. */
 	enum gz_result (*shade)(struct gz_drawer *drawer, const struct gz_shot *shot,
 				struct gz_shade *out_shade);
+	/** Optional: NULL if its objects cannot be told by a place. Find what is at a place of the
+	 *  picture. Writes @p out_pick on success. Fails as draw does. */
+	enum gz_result (*pick)(struct gz_drawer *drawer, const struct gz_pick_request *request,
+			       struct gz_pick *out_pick);
 	/** Optional. Take from another drawer of the technique, which shows the same objects by
 	 *  another backend, what it has prepared and this one would prepare alike. */
 	void (*take_prepared)(struct gz_drawer *drawer, struct gz_drawer *from);

@@ -48,6 +48,18 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 	return GZ_ERR_UNSUPPORTED;
 }
 
+enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
+					 const struct gz_illustrate_shot *shot,
+					 const struct gz_pick_request *request,
+					 struct gz_pick *out_pick)
+{
+	(void)caster;
+	(void)shot;
+	(void)request;
+	(void)out_pick;
+	return GZ_ERR_UNSUPPORTED;
+}
+
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)
 {
 	(void)caster;

@@ -153,7 +153,20 @@ static void illustrate_part(void *user, size_t part, int worker)
 	}
 }
 
-/* Make the room for what rays find, and the tree if the meshes are others. */
+/* Make the tree if the meshes are others. */
+static enum gz_result prepare_tree(struct gz_illustrate_caster *caster)
+{
+	if (caster->tree_of == caster->scene.meshes_made)
+		return GZ_OK;
+	caster->tree_of = 0;
+	const enum gz_result result = gz_surface_tree_build(
+		&caster->tree, caster->scene.meshes.shown, caster->scene.count);
+	if (result == GZ_OK)
+		caster->tree_of = caster->scene.meshes_made;
+	return result;
+}
+
+/* Make the room for what rays find, and the tree. */
 static enum gz_result prepare_caster(struct gz_illustrate_caster *caster,
 				     const struct gz_illustrate_shot *shot)
 {
@@ -163,14 +176,7 @@ static enum gz_result prepare_caster(struct gz_illustrate_caster *caster,
 		for (int i = 0; i < caster->picture.plane_count && result == GZ_OK; i++)
 			result = gz_lattices_prepare(&caster->lattices[layer][i], shot->plan,
 						     caster->picture.planes[layer][i].words);
-	if (result != GZ_OK || caster->tree_of == caster->scene.meshes_made)
-		return result;
-	caster->tree_of = 0;
-	result = gz_surface_tree_build(&caster->tree, caster->scene.meshes.shown,
-				       caster->scene.count);
-	if (result == GZ_OK)
-		caster->tree_of = caster->scene.meshes_made;
-	return result;
+	return result == GZ_OK ? prepare_tree(caster) : result;
 }
 
 static void reconstruct_found(struct gz_illustrate_caster *caster, const struct gz_plan *plan)
@@ -185,22 +191,26 @@ static void reconstruct_found(struct gz_illustrate_caster *caster, const struct 
 		}
 }
 
+/* What all rays share. */
+static void fill_illustrate_cast(const struct gz_illustrate_caster *caster, int layers,
+				 const struct gz_ray_frame *camera, struct gz_illustrate_cast *cast)
+{
+	*cast = (struct gz_illustrate_cast) {
+		.tree = caster->tree.scene,
+		.meshes = caster->scene.listed,
+		.mesh_count = (unsigned)caster->scene.count,
+		.frame = &caster->frame,
+		.layers = layers,
+	};
+	fill_illustrate_rays(camera, caster->scene.meshes.world_mm, cast);
+}
+
 /* Cast all rays of a shot. */
 static void cast_shot(struct gz_illustrate_caster *caster, const struct gz_illustrate_shot *shot,
 		      const struct gz_ray_frame *camera)
 {
-	struct illustrate_job job = {
-		.plan = shot->plan,
-		.caster = caster,
-		.cast = {
-			.tree = caster->tree.scene,
-			.meshes = caster->scene.listed,
-			.mesh_count = (unsigned)caster->scene.count,
-			.frame = &caster->frame,
-			.layers = caster->picture.layers,
-		},
-	};
-	fill_illustrate_rays(camera, caster->scene.meshes.world_mm, &job.cast);
+	struct illustrate_job job = { .plan = shot->plan, .caster = caster };
+	fill_illustrate_cast(caster, caster->picture.layers, camera, &job.cast);
 	gz_workers_run(caster->workers, illustrate_part, &job,
 		       (shot->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
 }
@@ -245,6 +255,63 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 			.gpu_ms = NAN,
 		};
 	return result;
+}
+
+/* Add the surface of a layer at the ray. @return what it lets through of what lies behind */
+static double add_picked(const struct gz_illustrate_scene *scene,
+			 const struct gz_illustrate_hits *hits, double seen, struct gz_pick *pick)
+{
+	const uint32_t id = hits->ids[0];
+	if (id < 1 || id > scene->id_count)
+		return 0;
+	const double opacity = (double)scene->opacities[id - 1];
+	if (opacity > 0) {
+		pick->ids[pick->count] = id;
+		pick->depths[pick->count] = (double)hits->depth_mm[0] / scene->meshes.world_mm;
+		pick->shares[pick->count++] = seen * opacity;
+	}
+	return seen * (1 - opacity);
+}
+
+_Static_assert(GZ_ILLUSTRATE_LAYERS_MAX <= GZ_PICKS_MAX, "a pick holds all layers");
+
+enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
+					 const struct gz_illustrate_shot *shot,
+					 const struct gz_pick_request *request,
+					 struct gz_pick *out_pick)
+{
+	const struct gz_illustrate_tile rays = {
+		.x = { (float)(request->x - 0.5) },
+		.y = { (float)(request->y - 0.5) },
+		.active = 1,
+	};
+	const int layers = caster->scene.transparent ? GZ_ILLUSTRATE_LAYERS_MAX : 1;
+	const struct gz_plan plan = { .layer_count = 1,
+				      .view = { request->width, request->height, { 0, 0 } } };
+	struct gz_illustrate_shot planned = *shot;
+	struct gz_illustrate_cast cast;
+	struct gz_illustrate_hits hits[GZ_ILLUSTRATE_LAYERS_MAX];
+	struct gz_ray_frame camera;
+	struct gz_pick pick = { 0 };
+	double seen = 1;
+	planned.plan = &plan;
+	enum gz_result result =
+		gz_camera_rays(request->camera, request->width, request->height, &camera);
+	if (result == GZ_OK)
+		result = gz_illustrate_scene_prepare(&caster->scene, &planned, caster->workers);
+	if (result == GZ_OK)
+		result = prepare_tree(caster);
+	if (result == GZ_OK)
+		result =
+			gz_illustrate_frame_make(&caster->scene, &planned, &camera, &caster->frame);
+	if (result != GZ_OK)
+		return result;
+	fill_illustrate_cast(caster, layers, &camera, &cast);
+	gz_illustrate_tile_cast(&cast, &rays, hits);
+	for (int layer = 0; layer < layers && seen > 0; layer++)
+		seen = add_picked(&caster->scene, &hits[layer], seen, &pick);
+	*out_pick = pick;
+	return GZ_OK;
 }
 
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)

@@ -70,6 +70,13 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 					 const struct gz_illustrate_planes *planes,
 					 struct gz_frame_stats *out_stats);
 
+/** Find what is at a place of a picture. @param shot  its plan is not used @return the failures of
+ * gz_illustrate_caster_draw() */
+enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
+					 const struct gz_illustrate_shot *shot,
+					 const struct gz_pick_request *request,
+					 struct gz_pick *out_pick);
+
 /** One line for reports, such as "avx2, 2 threads"; owned by the caster. */
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster);
 

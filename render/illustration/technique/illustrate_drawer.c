@@ -80,6 +80,25 @@ static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_
 	return gz_illustrate_caster_draw(self->caster, &illustrated, image, NULL, out_stats);
 }
 
+static enum gz_result illustrate_pick(struct gz_drawer *drawer,
+				      const struct gz_pick_request *request,
+				      struct gz_pick *out_pick)
+{
+	struct gz_illustrate_caster *caster = illustrate_of(drawer)->caster;
+	const struct gz_ray_params *rays = request->settings;
+	if (!caster) /* rays find what is at a place */
+		return GZ_ERR_UNSUPPORTED;
+	if (!gz_ray_params_valid(rays))
+		return GZ_ERR_INVAL;
+	const struct gz_illustrate_shot illustrated = {
+		.camera = request->camera,
+		.look = &rays->illustration,
+		.clip = &rays->clip,
+		.isovalue = rays->surface.isovalue,
+	};
+	return gz_illustrate_caster_pick(caster, &illustrated, request, out_pick);
+}
+
 static bool illustrate_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
 	(void)shot;
@@ -116,6 +135,7 @@ static void illustrate_destroy(struct gz_drawer *drawer)
 static const struct gz_drawer_ops illustrate_ops = {
 	.show = illustrate_show,
 	.draw = illustrate_draw,
+	.pick = illustrate_pick,
 	.keeps_on_device = illustrate_keeps_on_device,
 	.picture_texture = illustrate_picture_texture,
 	.backend = illustrate_backend,

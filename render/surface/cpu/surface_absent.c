@@ -49,6 +49,15 @@ enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
 	return GZ_ERR_UNSUPPORTED;
 }
 
+enum gz_result gz_surface_caster_pick(struct gz_surface_caster *caster,
+				      const struct gz_surface_shot *shot,
+				      const struct gz_pick_request *request,
+				      struct gz_pick *out_pick)
+{
+	(void)caster, (void)shot, (void)request, (void)out_pick;
+	return GZ_ERR_UNSUPPORTED;
+}
+
 struct gz_surface_meshes *gz_surface_caster_meshes(struct gz_surface_caster *caster)
 {
 	(void)caster;

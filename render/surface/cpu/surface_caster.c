@@ -551,6 +551,43 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	return GZ_OK;
 }
 
+enum gz_result gz_surface_caster_pick(struct gz_surface_caster *caster,
+				      const struct gz_surface_shot *shot,
+				      const struct gz_pick_request *request,
+				      struct gz_pick *out_pick)
+{
+	const struct gz_surface_tile rays = {
+		.x = { (float)(request->x - 0.5) },
+		.y = { (float)(request->y - 0.5) },
+		.active = 1,
+		.step = 1,
+	};
+	struct gz_surface_cast cast;
+	struct gz_surface_hits hits;
+	struct gz_ray_frame frame;
+	double prepare_ms = 0;
+	if (caster->meshes.count < 1 || !gz_ray_params_valid(shot->rays))
+		return GZ_ERR_INVAL;
+	enum gz_result result =
+		gz_camera_rays(request->camera, request->width, request->height, &frame);
+	if (result == GZ_OK)
+		result = prepare_surfaces(caster, &shot->rays->surface, &prepare_ms);
+	if (result == GZ_OK)
+		result = gz_cube_pictures_prepare(&caster->cube, &shot->rays->environment,
+						  caster->log, &prepare_ms);
+	if (result != GZ_OK)
+		return result;
+	fill_surface_cast(caster, shot, &frame, &cast);
+	caster->kernel->tile(&cast, &rays, &hits);
+	*out_pick = (struct gz_pick) {
+		.count = hits.ids[0] > 0 ? 1 : 0,
+		.ids = { hits.ids[0] },
+		.depths = { (double)hits.depth[0] },
+		.shares = { 1 },
+	};
+	return GZ_OK;
+}
+
 const char *gz_surface_caster_describe(const struct gz_surface_caster *caster)
 {
 	return caster->description;

@@ -84,6 +84,13 @@ enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
 				       const struct gz_surface_shot *shot,
 				       struct gz_shade *out_shade);
 
+/** Find what is at a place of a picture. @param shot  its plan is not used @return the failures of
+ * gz_surface_caster_draw() */
+enum gz_result gz_surface_caster_pick(struct gz_surface_caster *caster,
+				      const struct gz_surface_shot *shot,
+				      const struct gz_pick_request *request,
+				      struct gz_pick *out_pick);
+
 /** How much the triangles of the last picture take. */
 struct gz_surface_size {
 	size_t triangles;
