@@ -89,6 +89,13 @@ static const struct {
 const char gz_shading_template_names[] =
 	"bone-structures, information, organs, single-bones, vessel-trees, vessels, whole-scene";
 
+const char *gz_shading_template_name(size_t index)
+{
+	return index < sizeof named_templates / sizeof named_templates[0]
+		       ? named_templates[index].name
+		       : NULL;
+}
+
 enum gz_result gz_shading_template_named(const char *name, struct gz_shading_template *out_template)
 {
 	for (size_t i = 0; i < sizeof named_templates / sizeof named_templates[0]; i++)

@@ -64,6 +64,9 @@ struct gz_shading_template gz_shading_template_empty(void);
 /** The names of gz_shading_template_named(), separated by commas. */
 extern const char gz_shading_template_names[];
 
+/** The name with an index, in their order; NULL behind the last one. Static. */
+const char *gz_shading_template_name(size_t index);
+
 /**
  * A template of etc/illustration/, which the program holds, by its name without ending.
  *

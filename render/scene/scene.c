@@ -531,6 +531,12 @@ enum gz_result gz_scene_find_templates(const char *scene, const struct gz_log *l
 		snprintf(key, sizeof key, "%s.template", item->section);
 		result = find_template(&loader, key, item->template_name, &item->shading_template);
 	}
+	for (size_t i = 0; i < GZ_SCENE_REGIONS_MAX && result == GZ_OK; i++) {
+		struct gz_scene_region *item = &settings->regions.items[i];
+		char key[32];
+		snprintf(key, sizeof key, "region %u.template", (unsigned)i + 1);
+		result = find_template(&loader, key, item->template_name, &item->shading_template);
+	}
 	return result;
 }
 
@@ -649,6 +655,13 @@ static void style_object(const struct gz_scene_object *item, struct gz_object *o
 	object->shading_template = item->template_name[0] ? &item->shading_template : NULL;
 }
 
+/* The same of a region with a way of its own. */
+static void style_region(const struct gz_scene_region *region, struct gz_object *object)
+{
+	object->style = &region->style;
+	object->shading_template = region->template_name[0] ? &region->shading_template : NULL;
+}
+
 /* Append the volume once for each technique that shows it. The first has the id 1. */
 static void list_volumes(const struct gz_scene *scene, struct gz_object *out_objects, size_t room,
 			 size_t *count)
@@ -700,6 +713,10 @@ static void list_labels(const struct gz_scene *scene, size_t index, struct gz_ob
 	const struct gz_scene_object *item = &scene->settings.objects.items[index];
 	const struct gz_label_surfaces *labels = &scene->labels[index];
 	for (size_t i = 0; item->visible && i < labels->count; i++) {
+		const struct gz_scene_region *region =
+			gz_scene_region_of(&scene->settings.regions, item, labels->items[i].number);
+		if (region && !region->visible)
+			continue;
 		struct gz_object object = {
 			.technique = gz_scene_technique(&scene->settings, item),
 			.id = gz_scene_label_id(index, i),
@@ -711,6 +728,8 @@ static void list_labels(const struct gz_scene *scene, size_t index, struct gz_ob
 			.input = scene->inputs ? scene->inputs[index] : NULL,
 		};
 		style_object(item, &object);
+		if (region)
+			style_region(region, &object);
 		list_object(&object, out_objects, room, count);
 	}
 }

@@ -31,11 +31,11 @@ const struct gz_option gz_scene_object_options[GZ_SCENE_OBJECT_OPTIONS] = {
 	{ "object.particles", GZ_OPTION_STRING, AT(particles), .max = GZ_SCENE_FILE_SIZE,
 	  .preset = "",
 	  .help = "file of particles; section [particles] says how they become a volume" },
-	{ "object.visible", GZ_OPTION_BOOL, AT(visible), .preset = "yes",
-	  .help = "whether the object is shown" },
 	{ "object.regions", GZ_OPTION_STRING, AT(regions), .max = GZ_SCENE_FILE_SIZE, .preset = "",
 	  .help = "of labels: names or numbers of those to show, such as Hippocampus_* 37; -37 "
 		  "leaves one out" },
+	{ "object.visible", GZ_OPTION_BOOL, AT(visible), .preset = "yes",
+	  .help = "whether the object is shown" },
 	{ "object.importance", GZ_OPTION_DOUBLE, AT(style.importance), 0, 1, .preset = "0.5",
 	  .help = "importance of the object in illustrations, 0 to 1" },
 	{ "object.transparency", GZ_OPTION_DOUBLE, AT(style.transparency), 0, 1, .preset = "0",
@@ -56,6 +56,15 @@ struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
 		table->options[i].key = table->keys[i];
 	}
 	return (struct gz_option_binding) { table->options, GZ_SCENE_OBJECT_OPTIONS, object, NULL };
+}
+
+struct gz_option_binding gz_scene_object_bind_shown(struct gz_scene_object *object,
+						    struct gz_scene_object_table *table)
+{
+	struct gz_option_binding binding = gz_scene_object_bind(object, table);
+	binding.options += GZ_SCENE_OBJECT_OPTIONS - GZ_SCENE_OBJECT_SHOWN_OPTIONS;
+	binding.count = GZ_SCENE_OBJECT_SHOWN_OPTIONS;
+	return binding;
 }
 
 const char *gz_scene_object_name(const struct gz_scene_object *object)

@@ -49,8 +49,9 @@ struct gz_scene_objects {
 	struct gz_scene_object items[GZ_SCENE_OBJECTS_MAX];
 };
 
-/** Options of an object. */
-#define GZ_SCENE_OBJECT_OPTIONS 11
+/** Options of an object, and how many of them, the last ones, can change while it is shown. */
+#define GZ_SCENE_OBJECT_OPTIONS       11
+#define GZ_SCENE_OBJECT_SHOWN_OPTIONS 4
 
 /** Table over struct gz_scene_object. Its keys are "object.<name>"; those of one object are
  *  "object NAME.<name>". */
@@ -66,6 +67,11 @@ struct gz_scene_object_table {
  *  both. */
 struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
 					      struct gz_scene_object_table *table);
+
+/** gz_scene_object_bind() for the options that can change while the object is shown: visible,
+ *  importance, transparency, template. */
+struct gz_option_binding gz_scene_object_bind_shown(struct gz_scene_object *object,
+						    struct gz_scene_object_table *table);
 
 /** The object's name: its section without the word "object". Borrowed from @p object. */
 const char *gz_scene_object_name(const struct gz_scene_object *object);

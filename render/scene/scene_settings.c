@@ -145,6 +145,7 @@ enum gz_result gz_scene_settings_preset(struct gz_scene_settings *out_settings)
 	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT];
 	*out_settings = (struct gz_scene_settings) { 0 };
 	gz_scene_bind(out_settings, bindings);
+	gz_scene_regions_preset(&out_settings->regions);
 	return preset_tables(bindings);
 }
 
@@ -159,7 +160,43 @@ bool gz_scene_settings_same(const struct gz_scene_settings *a, const struct gz_s
 				     of_b[i].target))
 			return false;
 	return gz_scene_objects_same(&a->objects, &b->objects) &&
+	       gz_scene_regions_same(&a->regions, &b->regions) &&
 	       gz_spacing_table_same(&a->foveation.table, &b->foveation.table);
+}
+
+bool gz_scene_show_as(const struct gz_scene_settings *wanted, struct gz_scene_settings *settings)
+{
+	const struct gz_option *shown =
+		gz_scene_object_options + GZ_SCENE_OBJECT_OPTIONS - GZ_SCENE_OBJECT_SHOWN_OPTIONS;
+	bool changed = !gz_scene_regions_same(&wanted->regions, &settings->regions);
+	if (changed)
+		settings->regions = wanted->regions;
+	for (size_t i = 0; i < settings->objects.count && i < wanted->objects.count; i++) {
+		const struct gz_scene_object *from = &wanted->objects.items[i];
+		struct gz_scene_object *to = &settings->objects.items[i];
+		if (gz_options_same(shown, GZ_SCENE_OBJECT_SHOWN_OPTIONS, from, to))
+			continue;
+		to->visible = from->visible;
+		to->style = from->style;
+		memcpy(to->template_name, from->template_name, sizeof to->template_name);
+		to->shading_template = from->shading_template;
+		changed = true;
+	}
+	return changed;
+}
+
+bool gz_scene_templates_same(const struct gz_scene_settings *a, const struct gz_scene_settings *b)
+{
+	bool same =
+		a->objects.count == b->objects.count &&
+		strcmp(a->rays.illustration.template_name, b->rays.illustration.template_name) == 0;
+	for (size_t i = 0; i < a->objects.count && same; i++)
+		same = strcmp(a->objects.items[i].template_name,
+			      b->objects.items[i].template_name) == 0;
+	for (size_t i = 0; i < GZ_SCENE_REGIONS_MAX && same; i++)
+		same = strcmp(a->regions.items[i].template_name,
+			      b->regions.items[i].template_name) == 0;
+	return same;
 }
 
 int gz_scene_procedural_type(int volume_procedural)
@@ -299,9 +336,11 @@ struct scene_reader {
 	const char *name;
 	const struct gz_log *log;
 	struct gz_scene_settings *settings;
-	struct gz_option_binding bindings[GZ_SCENE_TABLE_COUNT + GZ_SCENE_OBJECTS_MAX];
+	struct gz_option_binding
+		bindings[GZ_SCENE_TABLE_COUNT + GZ_SCENE_OBJECTS_MAX + GZ_SCENE_REGIONS_MAX];
 	size_t binding_count;
 	struct gz_scene_object_table object_tables[GZ_SCENE_OBJECTS_MAX];
+	struct gz_scene_region_table region_tables[GZ_SCENE_REGIONS_MAX];
 	bool given[GZ_SCENE_DISPLAY + 1][GIVEN_MAX];
 };
 
@@ -318,6 +357,7 @@ static enum gz_result bind_reader(struct scene_reader *reader, const char *text,
 {
 	struct gz_scene_settings *settings = reader->settings;
 	*settings = (struct gz_scene_settings) { 0 };
+	gz_scene_regions_preset(&settings->regions);
 	gz_scene_bind(settings, reader->bindings);
 	for (size_t i = GZ_SCENE_VOLUME; i <= GZ_SCENE_DISPLAY; i++)
 		reader->bindings[i].given = reader->given[i];
@@ -329,6 +369,9 @@ static enum gz_result bind_reader(struct scene_reader *reader, const char *text,
 	for (size_t i = 0; i < settings->objects.count && result == GZ_OK; i++)
 		reader->bindings[reader->binding_count++] = gz_scene_object_bind(
 			&settings->objects.items[i], &reader->object_tables[i]);
+	for (size_t i = 0; i < GZ_SCENE_REGIONS_MAX; i++)
+		reader->bindings[reader->binding_count++] = gz_scene_region_bind(
+			&settings->regions.items[i], i, &reader->region_tables[i]);
 	return result;
 }
 

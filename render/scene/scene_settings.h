@@ -23,6 +23,7 @@
 #include "render/plan/foveation.h"
 #include "render/raycast/shared/ray_params.h"
 #include "render/scene/scene_objects.h"
+#include "render/scene/scene_regions.h"
 #include "render/scene/view_settings.h"
 #include "render/technique/technique.h"
 
@@ -54,6 +55,7 @@ struct gz_scene_settings {
 	char transfer_file[GZ_PATH_SIZE];  /**< empty: the object's, or one made for the volume */
 	char transfer_also[GZ_PATH_SIZE];  /**< further ones for studies, separated by blanks */
 	struct gz_scene_objects objects;   /**< sections [object NAME] */
+	struct gz_scene_regions regions;   /**< sections [region NUMBER] */
 	struct gz_camera camera;
 	struct gz_ray_params rays;
 	int technique;              /**< of all objects: index into gz_techniques + 1; 0: each
@@ -66,8 +68,8 @@ struct gz_scene_settings {
 	struct gz_display display; /**< valid only if the scene has a display */
 };
 
-/** The option tables of a scene, in the order of its file. Each object has a table of its own in
- *  addition (gz_scene_object_bind()). */
+/** The option tables of a scene, in the order of its file. Each object and each region has a table
+ *  of its own in addition (gz_scene_object_bind(), gz_scene_region_bind()). */
 enum gz_scene_table {
 	GZ_SCENE_VOLUME,
 	GZ_SCENE_PARTICLES,
@@ -105,8 +107,21 @@ void gz_scene_bind(struct gz_scene_settings *settings,
  *  check that every preset parses */
 enum gz_result gz_scene_settings_preset(struct gz_scene_settings *out_settings);
 
-/** Whether all options have equal values, and the objects and tables of spacings are the same. */
+/** Whether all options have equal values, and the objects, regions and tables of spacings are the
+ *  same. */
 bool gz_scene_settings_same(const struct gz_scene_settings *a, const struct gz_scene_settings *b);
+
+/**
+ * Take over how other settings show objects and regions: visible, importance, transparency,
+ * template.
+ *
+ * @param[in,out] settings  with the same objects
+ * @return whether anything has changed
+ */
+bool gz_scene_show_as(const struct gz_scene_settings *wanted, struct gz_scene_settings *settings);
+
+/** Whether the same templates are named for the whole scene, for each object and each region. */
+bool gz_scene_templates_same(const struct gz_scene_settings *a, const struct gz_scene_settings *b);
 
 /** The enum gz_raw_type of a procedural volume for which volume.type is not given.
  *  @param volume_procedural  enum gz_procedural + 1 */

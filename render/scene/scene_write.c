@@ -10,9 +10,10 @@
 #define GZ_LOG_MODULE "scene"
 
 enum {
-	SECTIONS_MAX = 32 + GZ_SCENE_OBJECTS_MAX,
+	SECTIONS_MAX = 32 + GZ_SCENE_OBJECTS_MAX + GZ_SCENE_REGIONS_MAX,
 	SECTION_SIZE = GZ_SCENE_SECTION_SIZE,
-	TABLES_MAX = GZ_SCENE_TABLE_COUNT + GZ_SCENE_OBJECTS_MAX,
+	TABLES_MAX = GZ_SCENE_TABLE_COUNT + GZ_SCENE_REGIONS_MAX + GZ_SCENE_OBJECTS_MAX,
+	REGION_TABLES_END = GZ_SCENE_TABLE_COUNT + GZ_SCENE_REGIONS_MAX,
 };
 
 /* Settings to write, with their tables and presets. */
@@ -22,6 +23,7 @@ struct scene_writer {
 	struct gz_scene_settings settings, presets;
 	struct gz_scene_object object_presets;
 	struct gz_scene_object_table object_tables[GZ_SCENE_OBJECTS_MAX];
+	struct gz_scene_region_table region_tables[GZ_SCENE_REGIONS_MAX];
 	size_t tables;
 	struct gz_option_binding bindings[TABLES_MAX], preset_bindings[TABLES_MAX];
 };
@@ -48,6 +50,12 @@ static void begin_scene_writer(struct scene_writer *writer, const struct gz_scen
 	gz_scene_bind(&writer->settings, writer->bindings);
 	gz_scene_bind(&writer->presets, writer->preset_bindings);
 	writer->tables = GZ_SCENE_TABLE_COUNT;
+	for (size_t i = 0; i < GZ_SCENE_REGIONS_MAX; i++) {
+		writer->preset_bindings[writer->tables] = gz_scene_region_bind(
+			&writer->presets.regions.items[i], i, &writer->region_tables[i]);
+		writer->bindings[writer->tables++] = gz_scene_region_bind(
+			&writer->settings.regions.items[i], i, &writer->region_tables[i]);
+	}
 	for (size_t i = 0; i < writer->settings.objects.count; i++) {
 		writer->bindings[writer->tables] = gz_scene_object_bind(
 			&writer->settings.objects.items[i], &writer->object_tables[i]);
@@ -64,6 +72,8 @@ static const void *said_target(const struct scene_key *key, size_t table,
 	gz_scene_bind(said, bindings);
 	if (table < GZ_SCENE_TABLE_COUNT)
 		return bindings[table].target;
+	if (table < REGION_TABLES_END)
+		return &said->regions.items[table - GZ_SCENE_TABLE_COUNT];
 	const struct gz_scene_object *own = key->target;
 	const int object = gz_scene_objects_find(&said->objects, own->section);
 	return object < 0 ? key->preset_target : &said->objects.items[object];

@@ -29,9 +29,9 @@ static void require_frame(const struct gz_session_frame *frame, int64_t time_ns)
 /* Each value by itself is one that its table has. */
 static void require_settings(struct gz_scene_settings *settings)
 {
-	struct gz_view_scene_tables tables;
-	gz_view_pick_scene_tables(settings, &tables);
-	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++)
+	struct gz_view_live_tables tables;
+	gz_view_pick_live_tables(settings, &tables);
+	for (size_t i = 0; i < tables.count; i++)
 		for (size_t k = 0; k < tables.bindings[i].count; k++)
 			require(gz_option_holds(&tables.bindings[i].options[k],
 						tables.bindings[i].target));

@@ -330,6 +330,8 @@ static void every_key_is_documented(void **state)
 		}
 	for (size_t i = 0; i < GZ_SCENE_OBJECT_OPTIONS; i++)
 		assert_documented(&document, strchr(gz_scene_object_options[i].key, '.') + 1);
+	for (size_t i = 0; i < GZ_SCENE_REGION_OPTIONS; i++)
+		assert_documented(&document, strchr(gz_scene_region_options[i].key, '.') + 1);
 	gz_text_free(&document);
 }
 

@@ -9,6 +9,7 @@
 #include "base/captured_log.h"
 #include "render/frame/picture_maker.h"
 #include "render/scene/scene.h"
+#include "render/scene/scene_write.h"
 #include "volume_files.h"
 
 /* Two blocks side by side, 12 x 8 x 8 mm together: label 5 on the left and 9 on the right. */
@@ -352,6 +353,113 @@ static void wrong_templates_and_regions_are_refused(void **state)
 	gz_scene_free(&scene);
 }
 
+static void regions_are_shown_in_a_way_of_their_own(void **state)
+{
+	(void)state;
+	struct gz_scene scene = loaded(BLOCKS "importance = 0.25\ntransparency = 0.5\n"
+					      "[region 3]\nobject = b\nlabel = 9\n"
+					      "importance = 1\ntemplate = organs\n"
+					      "[region 4]\nobject = c\nlabel = 5\n"
+					      "visible = no\n");
+	struct gz_scene_settings *settings = &scene.settings;
+	const struct gz_scene_object *blocks = &settings->objects.items[0];
+	struct gz_object objects[4];
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 4), 2);
+	assert_ptr_equal(objects[0].style, &blocks->style);
+	assert_null(objects[0].shading_template);
+	assert_true(objects[1].style->importance == 1 && objects[1].style->transparency == 0);
+	assert_int_equal(objects[1].shading_template->edge_emphasis, GZ_TEMPLATE_SMALL);
+	/* Another region begins as its object is, in the first section that is free. */
+	assert_null(gz_scene_region_of(&settings->regions, blocks, 5));
+	struct gz_scene_region *left = gz_scene_region_take(&settings->regions, blocks, 5);
+	assert_ptr_equal(left, &settings->regions.items[0]);
+	assert_ptr_equal(gz_scene_region_take(&settings->regions, blocks, 5), left);
+	assert_true(left->style.importance == 0.25 && left->style.transparency == 0.5);
+	left->visible = false;
+	assert_int_equal(gz_scene_list_objects(&scene, objects, 4), 1);
+	assert_int_equal(objects[0].id, gz_scene_label_id(0, 1));
+	for (int i = 100; gz_scene_region_take(&settings->regions, blocks, i); i++)
+		assert_true(i < 100 + GZ_SCENE_REGIONS_MAX);
+	gz_scene_free(&scene);
+}
+
+static void regions_are_written_and_read_back(void **state)
+{
+	(void)state;
+	struct gz_scene scene = loaded(BLOCKS), back;
+	const char *path = files_write("l.scene", "; mine\n" BLOCKS, 7 + sizeof BLOCKS - 1);
+	const struct gz_scene_saved saved = { &scene.settings, false, path };
+	struct gz_scene_region *region =
+		gz_scene_region_take(&scene.settings.regions, &scene.settings.objects.items[0], 9);
+	region->visible = false;
+	region->style.transparency = 1.0 / 3;
+	assert_int_equal(gz_scene_write(&saved, path, NULL), GZ_OK);
+	assert_int_equal(gz_scene_load(path, NULL, NULL, &back), GZ_OK);
+	assert_true(gz_scene_settings_same(&back.settings, &scene.settings));
+	back.settings.regions.items[0].style.transparency = 0;
+	assert_false(gz_scene_settings_same(&back.settings, &scene.settings));
+	gz_scene_free(&back);
+	gz_scene_free(&scene);
+}
+
+/* What is at the middle of each half of a picture, and at its edge. */
+static void check_picks(const char *technique, const char *more, uint32_t left, uint32_t edge)
+{
+	char text[256];
+	snprintf(text, sizeof text, "[object b]\nlabels = l.nrrd\ntechnique = %s\n%s%s", technique,
+		 more, "[camera]\neye = 0 -2.5 0\n");
+	const struct gz_picture_maker_params params = { .backend = "cpu" };
+	struct gz_scene scene = loaded(text);
+	struct gz_picture_maker *maker = NULL;
+	struct gz_object objects[4];
+	struct gz_pick pick = { 0 };
+	const size_t count = gz_scene_list_objects(&scene, objects, 4);
+	struct gz_pick_request request = {
+		.camera = &scene.settings.camera,
+		.settings = &scene.settings.rays,
+		.width = PICTURE_PX,
+		.height = PICTURE_PX,
+		.x = PICTURE_PX / 2.0 - 3,
+		.y = PICTURE_PX / 2.0,
+	};
+	assert_int_equal(gz_picture_maker_create(&params, NULL, &maker), GZ_OK);
+	assert_int_equal(gz_picture_maker_pick(maker, &request, &pick), GZ_ERR_INVAL);
+	if (gz_picture_maker_show(maker, objects, count) == GZ_OK) {
+		assert_int_equal(gz_picture_maker_pick(maker, &request, &pick), GZ_OK);
+		assert_int_equal(gz_pick_most_seen(&pick), left);
+		/* The front of the blocks is 4 mm before the centre, and the box is 12 mm long. */
+		if (left > 0)
+			assert_float_equal(pick.depths[0], 2.5 - 4.0 / 12, 0.06);
+		request.x = 0.5;
+		assert_int_equal(gz_picture_maker_pick(maker, &request, &pick), GZ_OK);
+		assert_int_equal(gz_pick_most_seen(&pick), edge);
+	}
+	gz_picture_maker_destroy(&maker);
+	gz_scene_free(&scene);
+}
+
+static void object_at_a_place_is_found(void **state)
+{
+	(void)state;
+	const uint32_t left = gz_scene_label_id(0, 0);
+	check_picks("isosurface", "", left, 0);
+	check_picks("illustrate", "", left, 0);
+	check_picks("illustrate", "transparency = 0.5\n", left, 0);
+	check_picks("illustrate", "transparency = 1\n", 0, 0);
+	check_picks("isosurface", "[clip]\ngreatest = 0.2 1 1\n", 0, 0);
+}
+
+static void object_that_is_seen_most_counts(void **state)
+{
+	(void)state;
+	const struct gz_pick skin = { 2, { 7, 3 }, { 1, 2 }, { 0.2, 0.8 } };
+	const struct gz_pick alike = { 2, { 7, 3 }, { 1, 2 }, { 0.5, 0.5 } };
+	const struct gz_pick none = { 0 };
+	assert_int_equal(gz_pick_most_seen(&skin), 3);
+	assert_int_equal(gz_pick_most_seen(&alike), 7);
+	assert_int_equal(gz_pick_most_seen(&none), 0);
+}
+
 TEST_SUITE(scene_labels)
 {
 	const struct CMUnitTest tests[] = {
@@ -365,6 +473,10 @@ TEST_SUITE(scene_labels)
 		cmocka_unit_test(regions_choose_labels_by_name_and_number),
 		cmocka_unit_test(objects_share_labels_by_regions),
 		cmocka_unit_test(wrong_templates_and_regions_are_refused),
+		cmocka_unit_test(regions_are_shown_in_a_way_of_their_own),
+		cmocka_unit_test(regions_are_written_and_read_back),
+		cmocka_unit_test(object_at_a_place_is_found),
+		cmocka_unit_test(object_that_is_seen_most_counts),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

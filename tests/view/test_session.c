@@ -186,6 +186,8 @@ static void session_is_read_back_with_its_changes(void **state)
 	self->settings.camera.eye[0] = 1.0 / 3;
 	self->settings.foveation.method = GZ_METHOD_DDC;
 	self->settings.rays.background[1] = 0.1;
+	snprintf(self->settings.regions.items[1].object, GZ_SCENE_SECTION_SIZE, "brain");
+	self->settings.regions.items[1].style.transparency = 1.0 / 3;
 	add(self, writer, 10);
 	self->transfer.points[1].rgb[2] = 0.1;
 	self->transfer.interpolation = GZ_TRANSFER_QUADRATIC;

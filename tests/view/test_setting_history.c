@@ -123,6 +123,32 @@ static void oldest_steps_make_room_and_adopted_changes_are_no_step(void **state)
 	assert_int_equal(place->settings.foveation.mdc_square_px, 407);
 }
 
+static void objects_and_regions_are_undone_by_their_names(void **state)
+{
+	struct place *place = *state;
+	static const char text[] = "[object brain]\nlabels = b.nii\ntechnique = illustrate\n";
+	struct gz_scene_settings *settings = &place->settings;
+	bool has_display;
+	assert_int_equal(gz_scene_parse("test", text, strlen(text), NULL, settings, &has_display),
+			 GZ_OK);
+	gz_setting_history_restart(place->history);
+	struct gz_scene_object *brain = &settings->objects.items[0];
+	brain->style.importance = 0.75;
+	note(place);
+	gz_scene_region_take(&settings->regions, brain, 37)->visible = false;
+	note(place);
+	gz_setting_history_undo(place->history, place->name);
+	assert_string_equal(place->name, "Region 1");
+	assert_null(gz_scene_region_of(&settings->regions, brain, 37));
+	gz_setting_history_undo(place->history, place->name);
+	assert_string_equal(place->name, "Object brain, importance");
+	assert_true(brain->style.importance == 0.5);
+	gz_setting_history_redo(place->history, place->name);
+	gz_setting_history_redo(place->history, place->name);
+	assert_false(gz_scene_region_of(&settings->regions, brain, 37)->visible);
+	assert_true(gz_scene_region_of(&settings->regions, brain, 37)->style.importance == 0.75);
+}
+
 TEST_SUITE(setting_history)
 {
 	const struct CMUnitTest tests[] = {
@@ -136,6 +162,8 @@ TEST_SUITE(setting_history)
 		cmocka_unit_test_setup_teardown(
 			oldest_steps_make_room_and_adopted_changes_are_no_step, make_place,
 			free_place),
+		cmocka_unit_test_setup_teardown(objects_and_regions_are_undone_by_their_names,
+						make_place, free_place),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,8 +30,7 @@ static enum gz_result start_worker(struct gz_comparison *comparison,
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	const struct gz_reference_source source = {
 		.objects = objects,
-		.object_count =
-			gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]),
+		.object_count = gz_frame_list_objects(comparison->maker, objects),
 		.backend = gz_frame_standard_backend(comparison->maker),
 		.gl_memory_bytes = (size_t)options->gl_memory_mib << 20,
 		.threads = options->threads,
@@ -70,7 +69,11 @@ enum gz_result gz_comparison_start(const struct gz_frame_maker *maker,
 static enum gz_result make_standard(struct gz_comparison *comparison,
 				    const struct gz_reference_view *view)
 {
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	const size_t count = gz_frame_list_objects(comparison->maker, objects);
 	double share;
+	if (gz_reference_worker_set_objects(comparison->worker, objects, count) != GZ_OK)
+		return GZ_ERR_NO_MEM;
 	gz_reference_worker_set_transfer(comparison->worker,
 					 &gz_frame_maker_scene(comparison->maker)->transfer);
 	const bool another = gz_reference_worker_ask(comparison->worker, view);

@@ -187,6 +187,12 @@ static void drop_spares(struct gz_frame_maker *maker)
 	gz_spare_drop(&maker->labels.spare);
 }
 
+size_t gz_frame_list_objects(const struct gz_frame_maker *maker,
+			     struct gz_object out_objects[GZ_SCENE_LISTED_MAX])
+{
+	return list_scene_objects(maker, out_objects);
+}
+
 static enum gz_result show_scene_objects(struct gz_frame_maker *maker)
 {
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
@@ -694,7 +700,24 @@ enum gz_result gz_frame_show_labels(struct gz_frame_maker *maker)
 	return r;
 }
 
-/* Draw by another technique if the settings ask for it. If that fails, the present one stays. */
+/* Show objects and regions as the settings say, if that has changed. */
+static enum gz_result follow_objects(struct gz_frame_maker *maker,
+				     const struct gz_scene_settings *settings)
+{
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	if (!gz_scene_show_as(settings, &maker->scene.settings))
+		return GZ_OK;
+	drop_spares(maker);
+	maker->any_made = false;
+	const size_t count = list_scene_objects(maker, objects);
+	if (count > 0)
+		return gz_picture_maker_show(maker->pictures, objects, count);
+	gz_err(maker->log, "no object is visible any more; at least one must stay");
+	return GZ_ERR_INVAL;
+}
+
+/* Draw by another technique if the settings ask for it. If that fails, the present one
+ * stays. */
 static enum gz_result follow_technique(struct gz_frame_maker *maker, int technique)
 {
 	int *shown = &maker->scene.settings.technique;
@@ -732,7 +755,9 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 		.loss_returned = request->loss_is_callers,
 	};
 	struct gz_picture_cost cost;
-	enum gz_result r = follow_technique(maker, settings->technique);
+	enum gz_result r = follow_objects(maker, settings);
+	if (r == GZ_OK)
+		r = follow_technique(maker, settings->technique);
 	if (r == GZ_OK)
 		r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
 	if (r != GZ_OK)
@@ -763,7 +788,8 @@ static void warn_standard_ignores_budget(struct gz_frame_maker *maker)
 		return;
 	maker->standard_told = true;
 	gz_warn(maker->log,
-		"attention.budget_ms %g: standard casts all rays and ignores the budget; choose a "
+		"attention.budget_ms %g: standard casts all rays and ignores the budget; "
+		"choose a "
 		"method that can keep it, such as acuity",
 		maker->attention.params.budget_ms);
 }
@@ -778,8 +804,8 @@ static const char *budget_state(const struct gz_frame_maker *maker,
 	return gz_budget_state_name(budget->state);
 }
 
-/* The budget covers rays and pixels only, not what later frames reuse, and not what is drawn or
- * written afterwards. Times of another method or size do not count. */
+/* The budget covers rays and pixels only, not what later frames reuse, and not what is
+ * drawn or written afterwards. Times of another method or size do not count. */
 static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 		       double total_ms)
 {
@@ -798,8 +824,10 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 	}
 	if (gz_attention_spent(&maker->attention, total_ms))
 		gz_warn(maker->log,
-			"attention.budget_ms %g cannot be kept: %s took %.1f ms with its coarsest "
-			"plan; raise it, lower the size or render.ray_sampling_rate, or try "
+			"attention.budget_ms %g cannot be kept: %s took %.1f ms with its "
+			"coarsest "
+			"plan; raise it, lower the size or render.ray_sampling_rate, or "
+			"try "
 			"another method",
 			maker->attention.params.budget_ms, gz_method_names[method], total_ms);
 }
@@ -836,6 +864,24 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	record.backend = gz_frame_backend(maker); /* cpu may have taken over */
 	*out_record = record;
 	return GZ_OK;
+}
+
+uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_settings *settings,
+			    int width, int height, struct gz_point point)
+{
+	const struct gz_pick_request request = {
+		.camera = &settings->camera,
+		.settings = &settings->rays,
+		.width = width,
+		.height = height,
+		.x = (double)point.x * width,
+		.y = (double)point.y * height,
+	};
+	struct gz_pick pick;
+	if (!maker->pictures || !(point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1) ||
+	    gz_picture_maker_pick(maker->pictures, &request, &pick) != GZ_OK)
+		return 0;
+	return gz_pick_most_seen(&pick);
 }
 
 unsigned gz_frame_texture(const struct gz_frame_maker *maker)

@@ -20,9 +20,10 @@ struct gz_frame_maker;
 
 /** What one frame shows. */
 struct gz_frame_request {
-	const struct gz_scene_settings *settings; /**< volume, transfer and display are ignored */
-	const struct gz_display *display;         /**< the picture fills it */
-	int width, height;                        /**< of the finished picture, px */
+	/** Volume, transfer, display and the data of objects are ignored. */
+	const struct gz_scene_settings *settings;
+	const struct gz_display *display; /**< the picture fills it */
+	int width, height;                /**< of the finished picture, px */
 	bool on_device;       /**< leave the picture on the graphics device if made there */
 	bool loss_is_callers; /**< return a lost context instead of falling back to cpu */
 };
@@ -98,6 +99,10 @@ bool gz_frame_maker_started(const struct gz_frame_maker *maker);
 
 /** The scene as loaded, with all overrides. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
+
+/** gz_scene_list_objects() for the objects that the last frame showed. */
+size_t gz_frame_list_objects(const struct gz_frame_maker *maker,
+			     struct gz_object out_objects[GZ_SCENE_LISTED_MAX]);
 
 /**
  * Use another transfer function from the next frame on, and drop what earlier frames accumulated.
@@ -243,12 +248,23 @@ bool gz_frame_settling(const struct gz_frame_maker *maker);
  *                         stayed on the device: see gz_frame_texture()
  * @param[out] out_record  what the frame cost
  * @retval GZ_ERR_INVAL      the picture has no or too many rays at the scene's image_sampling_rate,
- *                           or the camera is invalid; logged
+ *                           the camera is invalid, or no object is visible; logged
  * @retval GZ_ERR_NO_MEM     out of memory; logged
  * @retval GZ_ERR_NO_DEVICE  the context is lost and request->loss_is_callers is set; logged
  */
 enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 			     struct gz_image **out_image, struct gz_frame_record *out_record);
+
+/**
+ * The object that is seen most at a point of a picture.
+ *
+ * @param settings  of the picture; it shows what the last frame showed
+ * @param width, height  of the picture, px
+ * @param point     normalised
+ * @return a number of gz_scene_list_objects(); 0: none, or a technique that cannot tell
+ */
+uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_settings *settings,
+			    int width, int height, struct gz_point point);
 
 /** OpenGL's name of the texture with the last picture that stayed on the device. Valid until the
  * next frame. */

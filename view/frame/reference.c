@@ -10,6 +10,7 @@
 
 #include "protocol/display.h"
 #include "render/frame/picture_maker.h"
+#include "render/illustration/shading_template.h"
 #include "render/plan/plan.h"
 
 #define GZ_LOG_MODULE "reference"
@@ -22,9 +23,16 @@ enum { STRIP_ROWS_CPU = 32, STRIP_ROWS_GL = 256 };
 
 static const char cpu_name[] = "cpu";
 
+/* Objects, with styles and templates of their own. */
+struct object_list {
+	struct gz_object *objects; /* NULL: there is no list */
+	struct gz_object_style *styles;
+	struct gz_shading_template *templates;
+	size_t count;
+};
+
 struct gz_reference_worker {
-	struct gz_reference_source source; /* its objects are the worker's own */
-	struct gz_object *objects;
+	struct gz_reference_source source; /* its objects are not used */
 	int strip_rows;
 	pthread_t thread;
 	pthread_mutex_t lock;
@@ -36,8 +44,12 @@ struct gz_reference_worker {
 	uint64_t revision; /* of the transfer function */
 	struct gz_reference_view asked;
 	struct gz_transfer transfer;
+	struct object_list newest;
+	uint64_t newest_revision;
 	struct gz_image finished;
 	/* used by the thread only */
+	struct object_list listed; /* a copy of the newest */
+	uint64_t listed_revision;
 	struct gz_picture_maker *pictures;
 	struct gz_transfer shown;
 	uint64_t shown_revision;
@@ -53,8 +65,8 @@ static int reference_threads(const struct gz_reference_source *source)
 /* Rows that are cast at once: all of them where a picture depends on all its pixels. */
 static int rows_of_strip(const struct gz_reference_worker *worker, const struct gz_image *image)
 {
-	for (size_t i = 0; i < worker->source.object_count; i++)
-		if (worker->objects[i].technique->whole_pictures)
+	for (size_t i = 0; i < worker->listed.count; i++)
+		if (worker->listed.objects[i].technique->whole_pictures)
 			return image->height;
 	return worker->strip_rows;
 }
@@ -121,19 +133,91 @@ static enum gz_result make_reference(struct gz_reference_worker *worker,
 	return r;
 }
 
-/* Show the objects with the newest transfer function. */
+static void free_object_list(struct object_list *list)
+{
+	free(list->objects);
+	free(list->styles);
+	free(list->templates);
+	*list = (struct object_list) { 0 };
+}
+
+static enum gz_result copy_objects(const struct gz_object *objects, size_t count,
+				   struct object_list *out_list)
+{
+	struct object_list list = {
+		.objects = calloc(count, sizeof *list.objects),
+		.styles = calloc(count, sizeof *list.styles),
+		.templates = calloc(count, sizeof *list.templates),
+		.count = count,
+	};
+	if (!list.objects || !list.styles || !list.templates) {
+		free_object_list(&list);
+		return GZ_ERR_NO_MEM;
+	}
+	for (size_t i = 0; i < count; i++) {
+		list.objects[i] = objects[i];
+		if (objects[i].style) {
+			list.styles[i] = *objects[i].style;
+			list.objects[i].style = &list.styles[i];
+		}
+		if (objects[i].shading_template) {
+			list.templates[i] = *objects[i].shading_template;
+			list.objects[i].shading_template = &list.templates[i];
+		}
+	}
+	*out_list = list;
+	return GZ_OK;
+}
+
+static bool same_look(const struct gz_object *a, const struct gz_object *b)
+{
+	const struct gz_object_style *one = a->style ? a->style : &gz_object_style_plain;
+	const struct gz_object_style *other = b->style ? b->style : &gz_object_style_plain;
+	const struct gz_shading_template *of_a = a->shading_template;
+	const struct gz_shading_template *of_b = b->shading_template;
+	return one->importance == other->importance && one->transparency == other->transparency &&
+	       !of_a == !of_b &&
+	       (!of_a ||
+		gz_options_same(gz_template_options, gz_template_option_count, of_a, of_b));
+}
+
+static bool same_objects(const struct object_list *list, const struct gz_object *objects,
+			 size_t count)
+{
+	bool same = list->count == count;
+	for (size_t i = 0; i < count && same; i++)
+		same = list->objects[i].id == objects[i].id &&
+		       list->objects[i].technique == objects[i].technique &&
+		       same_look(&list->objects[i], &objects[i]);
+	return same;
+}
+
+/* Show the newest objects with the newest transfer function. */
 static enum gz_result show_newest(struct gz_reference_worker *worker)
 {
+	struct object_list before = { 0 }, now = { 0 };
+	enum gz_result r = GZ_OK;
 	pthread_mutex_lock(&worker->lock);
 	worker->shown = worker->transfer;
 	worker->shown_revision = worker->revision;
-	pthread_mutex_unlock(&worker->lock);
-	for (size_t i = 0; i < worker->source.object_count; i++) {
-		worker->objects[i].transfer = &worker->shown;
-		worker->objects[i].transfer_revision = worker->shown_revision;
+	if (worker->listed_revision != worker->newest_revision)
+		r = copy_objects(worker->newest.objects, worker->newest.count, &now);
+	if (r == GZ_OK && worker->listed_revision != worker->newest_revision) {
+		before = worker->listed;
+		worker->listed = now;
+		worker->listed_revision = worker->newest_revision;
 	}
-	return gz_picture_maker_show(worker->pictures, worker->objects,
-				     worker->source.object_count);
+	pthread_mutex_unlock(&worker->lock);
+	for (size_t i = 0; i < worker->listed.count; i++) {
+		worker->listed.objects[i].transfer = &worker->shown;
+		worker->listed.objects[i].transfer_revision = worker->shown_revision;
+	}
+	if (r == GZ_OK)
+		r = gz_picture_maker_show(worker->pictures, worker->listed.objects,
+					  worker->listed.count);
+	/* The renderer has let go of them, or fails with every list. */
+	free_object_list(&before);
+	return r;
 }
 
 /* Wait for a request. @return false: the thread must end */
@@ -192,14 +276,6 @@ static void *reference_thread(void *user)
 	return NULL;
 }
 
-static struct gz_object *copy_objects(const struct gz_reference_source *source)
-{
-	struct gz_object *copy = calloc(source->object_count, sizeof *copy);
-	if (copy)
-		memcpy(copy, source->objects, source->object_count * sizeof *copy);
-	return copy;
-}
-
 enum gz_result gz_reference_worker_start(const struct gz_reference_source *source,
 					 const struct gz_transfer *transfer,
 					 struct gz_reference_worker **out_worker)
@@ -213,8 +289,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 	if (!worker)
 		return GZ_ERR_NO_MEM;
 	worker->source = *source;
-	worker->objects = copy_objects(source);
-	worker->source.objects = worker->objects;
+	worker->newest_revision = 1;
 	worker->transfer = *transfer;
 	const struct gz_picture_maker_params params = {
 		.backend = source->backend ? source->backend : cpu_name,
@@ -222,9 +297,9 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 				    .gl_memory_bytes = source->gl_memory_bytes },
 	};
 	worker->strip_rows = strcmp(params.backend, cpu_name) == 0 ? STRIP_ROWS_CPU : STRIP_ROWS_GL;
-	if (!worker->objects ||
+	if (copy_objects(source->objects, source->object_count, &worker->newest) != GZ_OK ||
 	    gz_picture_maker_create(&params, source->log, &worker->pictures) != GZ_OK) {
-		free(worker->objects);
+		free_object_list(&worker->newest);
 		free(worker);
 		return GZ_ERR_NO_MEM;
 	}
@@ -235,7 +310,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 		pthread_cond_destroy(&worker->wake);
 		pthread_mutex_destroy(&worker->lock);
 		gz_picture_maker_destroy(&worker->pictures);
-		free(worker->objects);
+		free_object_list(&worker->newest);
 		free(worker);
 		return GZ_ERR_NO_MEM;
 	}
@@ -264,6 +339,26 @@ void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
 			request_reference(worker);
 	}
 	pthread_mutex_unlock(&worker->lock);
+}
+
+enum gz_result gz_reference_worker_set_objects(struct gz_reference_worker *worker,
+					       const struct gz_object *objects, size_t count)
+{
+	struct object_list list;
+	enum gz_result r = GZ_OK;
+	pthread_mutex_lock(&worker->lock);
+	if (count > 0 && !same_objects(&worker->newest, objects, count)) {
+		r = copy_objects(objects, count, &list);
+		if (r == GZ_OK) {
+			free_object_list(&worker->newest);
+			worker->newest = list;
+			worker->newest_revision++;
+			if (worker->any_asked)
+				request_reference(worker);
+		}
+	}
+	pthread_mutex_unlock(&worker->lock);
+	return r;
 }
 
 static bool same_view(const struct gz_reference_view *a, const struct gz_reference_view *b)
@@ -330,7 +425,8 @@ void gz_reference_worker_stop(struct gz_reference_worker **worker)
 	pthread_cond_destroy(&(*worker)->wake);
 	pthread_mutex_destroy(&(*worker)->lock);
 	gz_image_free(&(*worker)->finished);
-	free((*worker)->objects);
+	free_object_list(&(*worker)->newest);
+	free_object_list(&(*worker)->listed);
 	free(*worker);
 	*worker = NULL;
 }

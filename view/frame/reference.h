@@ -30,8 +30,9 @@ struct gz_reference_view {
 
 /** What the worker needs. */
 struct gz_reference_source {
-	/** What is shown, at least one, in memory. The list is copied; what it points to is
-	 *  borrowed until gz_reference_worker_stop(), but for transfer functions. */
+	/** What is shown, at least one, in memory. The list is copied, with styles and templates;
+	 *  what else it points to is borrowed until gz_reference_worker_stop(), but for transfer
+	 *  functions. */
 	const struct gz_object *objects;
 	size_t object_count;
 	/** "cpu", or "gl", in an OpenGL context of the worker's own without a window. NULL: cpu.
@@ -63,6 +64,16 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 /** Use another transfer function (copied) from now on. Does nothing if it is the same. */
 void gz_reference_worker_set_transfer(struct gz_reference_worker *worker,
 				      const struct gz_transfer *transfer);
+
+/**
+ * Show other objects from now on, of the same scene: some are hidden, others shown, and styles have
+ * changed. Copied as those of gz_reference_worker_start(). Does nothing if they are the same.
+ *
+ * @param count  0: nothing changes
+ * @retval GZ_ERR_NO_MEM  the present ones stay
+ */
+enum gz_result gz_reference_worker_set_objects(struct gz_reference_worker *worker,
+					       const struct gz_object *objects, size_t count);
 
 /** Request a picture and cancel the one being rendered. Does nothing if @p view equals the last
  * request. Does not block. @return whether another picture was requested */

@@ -112,6 +112,9 @@ static enum gz_result take_settings(struct gz_replay *replay)
 		foveation->table = (struct gz_spacing_table) { 0 };
 		r = gz_scene_load_table(replay->options->scene, replay->log, foveation);
 	}
+	if (r == GZ_OK && replay->state.templates_changed)
+		r = gz_scene_find_templates(replay->options->scene, replay->log,
+					    &replay->state.settings);
 	memcpy(&replay->settings, &replay->state.settings, sizeof replay->settings);
 	if (r == GZ_OK)
 		r = gz_view_options_apply(replay->options, &replay->settings);

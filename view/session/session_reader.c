@@ -193,15 +193,15 @@ static bool cut_set(struct gz_session_reader *reader, char **out_key, char **out
 static enum gz_result parse_set_line(struct gz_session_reader *reader,
 				     struct gz_session_state *state)
 {
-	struct gz_view_scene_tables tables;
+	struct gz_view_live_tables tables;
 	char *key, *value, message[MESSAGE_SIZE / 2];
 	size_t binding;
 	if (!cut_set(reader, &key, &value))
 		return refuse_session_line(reader,
 					   "a setting without a value; the file is damaged");
-	gz_view_pick_scene_tables(&state->settings, &tables);
+	gz_view_pick_live_tables(&state->settings, &tables);
 	const struct gz_option *option =
-		gz_options_find(tables.bindings, GZ_VIEW_SCENE_TABLES, key, &binding);
+		gz_options_find(tables.bindings, tables.count, key, &binding);
 	if (!option)
 		return refuse_session_line(
 			reader, "%.*s: unknown setting; the file is damaged or of a later version",
@@ -211,6 +211,8 @@ static enum gz_result parse_set_line(struct gz_session_reader *reader,
 		return refuse_session_line(reader,
 					   "foveation.table: not a file in the session's folder");
 	state->table_changed = state->table_changed || table;
+	state->templates_changed =
+		state->templates_changed || strcmp(strrchr(key, '.'), ".template") == 0;
 	if (gz_option_parse(option, value, tables.bindings[binding].target, message,
 			    sizeof message) != GZ_OK)
 		return refuse_session_line(reader, "%.*s: %s", WORD_SIZE, key, message);
@@ -276,7 +278,7 @@ static bool begins_with(const char *line, const char *word)
 enum gz_result gz_session_read(struct gz_session_reader *reader, struct gz_session_state *state,
 			       struct gz_session_frame *out_frame)
 {
-	state->transfer_changed = state->table_changed = false;
+	state->transfer_changed = state->table_changed = state->templates_changed = false;
 	while (reader->ended == GZ_OK && next_session_line(reader) == GZ_OK) {
 		if (begins_with(reader->line, GZ_SESSION_SET_WORD))
 			(void)parse_set_line(reader, state);

@@ -25,6 +25,7 @@ struct gz_session_state {
 	bool transfer_changed; /**< since the previous frame; each read sets or clears it */
 	bool table_changed;    /**< settings.foveation.table_file has changed: the renderer loads it
 				  with gz_scene_load_table(), beside the session's scene */
+	bool templates_changed; /**< likewise templates: gz_scene_find_templates() */
 };
 
 /**

@@ -263,7 +263,8 @@ static void print_change(const struct gz_option *option, const void *before, con
 			 struct gz_text *lines)
 {
 	char old[GZ_PATH_SIZE], new[GZ_PATH_SIZE];
-	if (gz_option_format(option, before, old, sizeof old) != GZ_OK ||
+	if (gz_option_same(option, before, now) ||
+	    gz_option_format(option, before, old, sizeof old) != GZ_OK ||
 	    gz_option_format(option, now, new, sizeof new) != GZ_OK || strcmp(old, new) == 0)
 		return;
 	/* A scene file cannot hold a line break. */
@@ -288,7 +289,7 @@ static void keep_names(const struct gz_scene_settings *from, struct gz_scene_set
 static enum gz_result print_changes(struct gz_session_writer *writer,
 				    const struct gz_scene_settings *settings)
 {
-	struct gz_view_scene_tables old, new;
+	struct gz_view_live_tables old, new;
 	struct gz_scene_settings now;
 	struct gz_scene_settings *before = &writer->settings;
 	memcpy(&now, settings, sizeof now);
@@ -300,9 +301,9 @@ static enum gz_result print_changes(struct gz_session_writer *writer,
 		if (r != GZ_OK)
 			return r;
 	}
-	gz_view_pick_scene_tables(before, &old);
-	gz_view_pick_scene_tables(&now, &new);
-	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++)
+	gz_view_pick_live_tables(before, &old);
+	gz_view_pick_live_tables(&now, &new);
+	for (size_t i = 0; i < old.count; i++)
 		for (size_t k = 0; k < old.bindings[i].count; k++)
 			print_change(&old.bindings[i].options[k], old.bindings[i].target,
 				     new.bindings[i].target, &writer->lines);

@@ -28,6 +28,21 @@ void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
 		out_tables->bindings[i] = all[picked[i]];
 }
 
+void gz_view_pick_live_tables(struct gz_scene_settings *settings,
+			      struct gz_view_live_tables *out_tables)
+{
+	struct gz_view_scene_tables scene;
+	gz_view_pick_scene_tables(settings, &scene);
+	memcpy(out_tables->bindings, scene.bindings, sizeof scene.bindings);
+	out_tables->count = GZ_VIEW_SCENE_TABLES;
+	for (size_t i = 0; i < GZ_SCENE_REGIONS_MAX; i++)
+		out_tables->bindings[out_tables->count++] = gz_scene_region_bind(
+			&settings->regions.items[i], i, &out_tables->regions[i]);
+	for (size_t i = 0; i < settings->objects.count; i++)
+		out_tables->bindings[out_tables->count++] = gz_scene_object_bind_shown(
+			&settings->objects.items[i], &out_tables->objects[i]);
+}
+
 size_t gz_view_scene_key_count(const struct gz_view_scene_tables *tables)
 {
 	size_t count = 0;
@@ -290,4 +305,10 @@ bool gz_setting_applies(const struct gz_scene_settings *settings, const char *ke
 		if (strncmp(key, conditions[i].key, strlen(conditions[i].key)) == 0)
 			return conditions[i].applies(settings);
 	return true;
+}
+
+bool gz_object_style_applies(const struct gz_scene_settings *settings,
+			     const struct gz_scene_object *object)
+{
+	return object && gz_scene_technique(settings, object) == &gz_illustrate_technique;
 }

@@ -27,6 +27,23 @@ struct gz_view_scene_tables {
 void gz_view_pick_scene_tables(struct gz_scene_settings *settings,
 			       struct gz_view_scene_tables *out_tables);
 
+/** Most tables of struct gz_view_live_tables. */
+#define GZ_VIEW_LIVE_TABLES_MAX (GZ_VIEW_SCENE_TABLES + GZ_SCENE_REGIONS_MAX + GZ_SCENE_OBJECTS_MAX)
+
+/** All that can change while a scene is shown: the tables of struct gz_view_scene_tables first,
+ *  then those of regions, then what objects are shown by. */
+struct gz_view_live_tables {
+	struct gz_option_binding bindings[GZ_VIEW_LIVE_TABLES_MAX]; /**< given is NULL */
+	size_t count;
+	struct gz_scene_region_table regions[GZ_SCENE_REGIONS_MAX];
+	struct gz_scene_object_table objects[GZ_SCENE_OBJECTS_MAX];
+};
+
+/** Bind all tables to @p settings, which is borrowed and must outlive @p out_tables. Call it again
+ *  when the settings have other objects. */
+void gz_view_pick_live_tables(struct gz_scene_settings *settings,
+			      struct gz_view_live_tables *out_tables);
+
 /** The number of keys in all tables together. */
 size_t gz_view_scene_key_count(const struct gz_view_scene_tables *tables);
 
@@ -37,5 +54,10 @@ size_t gz_view_scene_key_count(const struct gz_view_scene_tables *tables);
  * @param key  a key of the scene's tables; keys without a condition always have an effect
  */
 bool gz_setting_applies(const struct gz_scene_settings *settings, const char *key);
+
+/** Whether importance, transparency and template of an object and its regions have any effect.
+ *  @param object  NULL: the volume of section [volume] */
+bool gz_object_style_applies(const struct gz_scene_settings *settings,
+			     const struct gz_scene_object *object);
 
 #endif

@@ -22,9 +22,9 @@ struct step {
 
 struct gz_setting_history {
 	struct gz_scene_settings *live;
-	struct gz_view_scene_tables live_tables;
+	struct gz_view_live_tables live_tables;
 	struct gz_scene_settings noted; /* as of the last note */
-	struct gz_view_scene_tables noted_tables;
+	struct gz_view_live_tables noted_tables;
 	struct step steps[GZ_SETTING_HISTORY_STEPS];
 	size_t count; /* of the steps, the oldest first */
 	size_t done;  /* of them, the ones that are not undone */
@@ -34,6 +34,14 @@ struct gz_setting_history {
 static bool is_watched(const struct gz_option *option)
 {
 	return strcmp(option->key, "view.frame_times") != 0;
+}
+
+/* Begin with what the settings are now. Other scenes have other objects. */
+static void note_all(struct gz_setting_history *history)
+{
+	history->noted = *history->live;
+	gz_view_pick_live_tables(history->live, &history->live_tables);
+	gz_view_pick_live_tables(&history->noted, &history->noted_tables);
 }
 
 static void free_step(struct step *step)
@@ -53,9 +61,7 @@ enum gz_result gz_setting_history_create(struct gz_scene_settings *settings,
 	if (!history)
 		return GZ_ERR_NO_MEM;
 	history->live = settings;
-	gz_view_pick_scene_tables(settings, &history->live_tables);
-	gz_view_pick_scene_tables(&history->noted, &history->noted_tables);
-	history->noted = *settings;
+	note_all(history);
 	*out_history = history;
 	return GZ_OK;
 }
@@ -75,7 +81,7 @@ void gz_setting_history_restart(struct gz_setting_history *history)
 	for (size_t i = 0; i < history->count; i++)
 		free_step(&history->steps[i]);
 	history->count = history->done = 0;
-	history->noted = *history->live;
+	note_all(history);
 }
 
 /* ---- noting ---- */
@@ -106,7 +112,7 @@ static bool add_change(struct step *step, size_t table, const struct gz_option *
 /* @return false: no memory */
 static bool find_changes(const struct gz_setting_history *history, struct step *step)
 {
-	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
+	for (size_t i = 0; i < history->live_tables.count; i++) {
 		const struct gz_option_binding *live = &history->live_tables.bindings[i];
 		const struct gz_option_binding *noted = &history->noted_tables.bindings[i];
 		for (size_t k = 0; k < live->count; k++) {

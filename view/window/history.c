@@ -15,13 +15,13 @@ struct gz_window_history {
 	struct gz_setting_history *steps;
 	int transfer_steps;             /* of the transfer function, that are among them */
 	struct gz_scene_settings given; /* as the scene was opened or saved last */
-	struct gz_view_scene_tables given_tables;
+	struct gz_view_live_tables given_tables, live_tables;
 };
 
 static enum gz_result open_history(struct gz_window *window)
 {
 	struct gz_window_history *self = window->history;
-	gz_view_pick_scene_tables(&self->given, &self->given_tables);
+	gz_view_pick_live_tables(&self->given, &self->given_tables);
 	return gz_setting_history_create(&window->settings, &self->steps);
 }
 
@@ -62,6 +62,8 @@ static void begin_history(struct gz_window *window)
 	gz_setting_history_restart(self->steps);
 	self->transfer_steps = gz_window_transfer_steps(window);
 	self->given = window->settings;
+	gz_view_pick_live_tables(&self->given, &self->given_tables);
+	gz_view_pick_live_tables(&window->settings, &self->live_tables);
 }
 
 /* Not among what is asked about before the scene is left: where one looks from, and what is shown
@@ -78,8 +80,8 @@ bool gz_window_scene_changed(const struct gz_window *window)
 		return false;
 	if (gz_window_transfer_changed(window))
 		return true;
-	for (size_t i = 0; i < GZ_VIEW_SCENE_TABLES; i++) {
-		const struct gz_option_binding *live = &window->tables.bindings[i];
+	for (size_t i = 0; i < self->given_tables.count; i++) {
+		const struct gz_option_binding *live = &self->live_tables.bindings[i];
 		const void *given = self->given_tables.bindings[i].target;
 		for (size_t k = 0; k < live->count; k++)
 			if (is_worth_saving(&live->options[k]) &&

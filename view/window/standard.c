@@ -16,8 +16,7 @@ enum gz_result gz_window_start_standard(const struct gz_window *window, bool urg
 {
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
-	const size_t count =
-		gz_scene_list_objects(scene, objects, sizeof objects / sizeof objects[0]);
+	const size_t count = gz_frame_list_objects(window->maker, objects);
 	const struct gz_reference_source source = {
 		.objects = objects,
 		.object_count = count,
@@ -41,6 +40,10 @@ void gz_window_ask_for_standard(const struct gz_window *window, struct gz_refere
 		.width = width,
 		.height = height,
 	};
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	const size_t count = gz_frame_list_objects(window->maker, objects);
+	/* Without memory the picture shows them as they were. */
+	(void)gz_reference_worker_set_objects(worker, objects, count);
 	gz_reference_worker_set_transfer(worker, &gz_frame_maker_scene(window->maker)->transfer);
 	gz_reference_worker_ask(worker, &view);
 }

@@ -126,11 +126,11 @@ static bool take_cube(struct gz_window *window, const struct gz_scene_settings *
 	       gz_scene_find_cube(gz_window_scene_path(window), window->log, environment) == GZ_OK;
 }
 
-/* Find the template of illustrations before anything uses it. What is wrong with it is logged. */
-static bool take_template(struct gz_window *window, const struct gz_scene_settings *before)
+/* Find the templates of illustrations before anything uses them. What is wrong with one is logged.
+ */
+static bool take_templates(struct gz_window *window, const struct gz_scene_settings *before)
 {
-	return strcmp(window->settings.rays.illustration.template_name,
-		      before->rays.illustration.template_name) == 0 ||
+	return gz_scene_templates_same(&window->settings, before) ||
 	       gz_scene_find_templates(gz_window_scene_path(window), window->log,
 				       &window->settings) == GZ_OK;
 }
@@ -139,7 +139,7 @@ static bool take_template(struct gz_window *window, const struct gz_scene_settin
 void gz_window_take_changes(struct gz_window *window, const struct gz_scene_settings *before)
 {
 	if (!take_table(window, before) || !take_cube(window, before) ||
-	    !take_template(window, before) || !settings_valid(&window->settings))
+	    !take_templates(window, before) || !settings_valid(&window->settings))
 		window->settings = *before;
 	window->cast_needed = true;
 	gz_window_wake_panels(window);
