@@ -8,7 +8,7 @@ import os
 import sys
 import unittest
 
-from picture import PATIENCE_S, read_png, run
+from picture import PATIENCE_S, read_png, run, write_labels
 from window_case import GAZEVIEW, SCENE, SIZE, WindowCase
 
 BAR = (36, 36, 36)  # the menu bar's ground
@@ -123,6 +123,34 @@ class Menus(WindowCase):
         self.viewer.wait(timeout=PATIENCE_S)
         self.assertIn("written", self.messages())
         self.assertTrue(read_png(saved[0]) == standard, "another picture is saved")
+
+    def test_region_is_chosen_by_a_click_shown_alone_and_saved(self):
+        self.own = write_labels(self.place.name, "[camera]", "eye = 0 -2.5 0")
+        first = self.start("--gaze", "mouse", "--backend", "cpu", scene=self.own)
+        self.assertTrue(self.is_blue(first.at(300, 195)))
+        self.press("a")
+        self.click(170, 200)  # on label 5, below the panel
+        self.until(lambda p: self.amber_letters_left(p) > 20, "the name of the chosen region")
+        self.click(57, 163)  # Show it alone
+        self.press("a")
+        self.until(lambda p: not self.is_blue(p.at(300, 195)), "only one region")
+        lines = self.saved()
+        self.assertEqual(lines[lines.index("[region 1]"):][:4],
+                         ["[region 1]", "object = lobes", "label = 9", "visible = false"])
+        self.press("ctrl+z")
+        self.until(lambda p: self.is_blue(p.at(300, 195)), "both regions")
+        self.assertEqual(self.title()[0], "*")
+        # The search finds regions by their names.
+        self.find("left lobe")
+        self.press("Return")
+        self.until(lambda p: self.amber_letters_left(p) > 20, "the region that was found")
+
+    def is_blue(self, pixel):
+        return pixel[2] > pixel[0] + 60
+
+    def amber_letters_left(self, picture):
+        pixels = (picture.at(x, y) for x in range(10, 100) for y in range(60, 250))
+        return sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
 
     def test_start_window_opens_a_recent_scene_by_its_picture(self):
         self.start_own_scene()

@@ -798,6 +798,14 @@ bool gz_widget_checkbox(const char *id, bool *value)
 	return ImGui::Checkbox(id, value);
 }
 
+bool gz_widget_small_checkbox(const char *id, bool *value)
+{
+	ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(0, 0));
+	const bool changed = ImGui::Checkbox(id, value);
+	ImGui::PopStyleVar();
+	return changed;
+}
+
 bool gz_widget_choice(const char *id, int *value, const char *const names[])
 {
 	int count = 0;

@@ -251,6 +251,10 @@ bool gz_widget_back_button(const char *id);
 /** A box to tick. @return whether it was changed */
 bool gz_widget_checkbox(const char *id, bool *value);
 
+/** A box to tick, no higher than a line of text, for rows of a list. @return whether it was changed
+ */
+bool gz_widget_small_checkbox(const char *id, bool *value);
+
 /** One of several. @param names NULL-terminated @return whether it was changed */
 bool gz_widget_choice(const char *id, int *value, const char *const names[]);
 

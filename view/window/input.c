@@ -138,15 +138,26 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 		run_character(window, codepoint);
 }
 
+static void click_picture(struct gz_window *window)
+{
+	GZ_FOR_EACH_PART (part)
+		if ((*part)->click)
+			(*part)->click(window);
+}
+
 /* A right click without a drag opens the picture's menu. */
-static void release_mouse(struct gz_window *window, int button)
+static void release_mouse(struct gz_window *window, int button, int modifiers)
 {
 	if (window->grab_button != button)
 		return;
-	if (window->grabber && button == GLFW_MOUSE_BUTTON_RIGHT &&
-	    window->grab_moved <= CLICK_NEAR * (double)gz_widgets_scale())
-		gz_window_ask_for_menu(window);
+	const bool clicked =
+		window->grabber && window->grab_moved <= CLICK_NEAR * (double)gz_widgets_scale();
+	const bool plain = window->grabber == &gz_window_camera_part && modifiers == 0;
 	window->grabber = NULL;
+	if (clicked && button == GLFW_MOUSE_BUTTON_RIGHT)
+		gz_window_ask_for_menu(window);
+	else if (clicked && plain && button == GLFW_MOUSE_BUTTON_LEFT && window->maker)
+		click_picture(window);
 }
 
 /* Dear ImGui itself knows where the mouse was in the last frame only. */
@@ -161,7 +172,7 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 	struct gz_window *window = window_of(glfw);
 	gz_window_wake_panels(window);
 	if (action == GLFW_RELEASE)
-		release_mouse(window, button);
+		release_mouse(window, button, modifiers_of(mods));
 	if (action != GLFW_PRESS || window->alone || window->grabber || !window->maker ||
 	    panels_have_mouse(window))
 		return;

@@ -8,24 +8,29 @@
 #include "view/panels/keys_panel.h"
 #include "view/panels/widgets.h"
 #include "view/settings/setting_label.h"
+#include "view/window/objects.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
-/* Most rows and settings (chosen: more than twice as many as there are). */
-enum { ROWS_MAX = 512, SETTINGS_MAX = 384, SETTING_TEXT_SIZE = 256 };
+/* Most rows of actions and settings (chosen: more than twice as many as there are), and of objects
+ * and their regions. */
+enum { SETTINGS_MAX = 384, OBJECTS_MAX = GZ_SCENE_LISTED_MAX, SETTING_TEXT_SIZE = 256 };
+enum { ROWS_MAX = 512 + OBJECTS_MAX, OBJECT_TEXT_SIZE = GZ_LABEL_NAME_SIZE + 64 };
 
 struct gz_window_keys {
 	struct gz_keys_panel panel;
 	struct gz_keys_row rows[ROWS_MAX];
-	/* What a row runs: an action, or else it shows a setting. */
+	/* What a row runs: an action, or else it shows a setting, or else an object. */
 	const struct gz_window_action *actions[ROWS_MAX];
 	const char *settings[ROWS_MAX];
 	size_t count;
+	size_t fixed; /* rows that are there without a scene; those of objects follow */
 	/* Texts of the settings' rows. */
 	char sections[SETTINGS_MAX][GZ_SETTING_LABEL_SIZE];
 	char texts[SETTINGS_MAX][SETTING_TEXT_SIZE];
 	size_t setting_count;
+	char objects[OBJECTS_MAX][OBJECT_TEXT_SIZE]; /* texts of the objects' rows */
 };
 
 /* Groups in the order of the list (chosen: what is needed most comes first). */
@@ -100,12 +105,30 @@ static enum gz_result list_keys(struct gz_window *window)
 		GZ_FOR_EACH_PART (part)
 			list_part_keys(window->keys, *part, rank);
 	list_settings(window);
+	window->keys->fixed = window->keys->count;
 	return GZ_OK;
+}
+
+/* Those of the scene, which only the search shows. */
+static void list_objects(struct gz_window *window)
+{
+	struct gz_window_keys *state = window->keys;
+	const size_t count = gz_window_object_rows(window);
+	state->count = state->fixed;
+	for (size_t i = 0; i < count && i < OBJECTS_MAX && state->count < ROWS_MAX; i++) {
+		gz_window_print_object_row(window, i, state->objects[i], sizeof state->objects[i]);
+		state->rows[state->count++] = (struct gz_keys_row) {
+			.group = "Objects",
+			.help = state->objects[i],
+			.words = "region label hide",
+		};
+	}
 }
 
 static void show_keys(struct gz_window *window, bool open, bool search)
 {
 	struct gz_keys_panel *panel = &window->keys->panel;
+	list_objects(window);
 	panel->open = open;
 	panel->search = search;
 	panel->filter[0] = '\0';
@@ -131,8 +154,10 @@ static void draw_keys(struct gz_window *window, const struct gz_window_gaze *gaz
 	gz_window_wake_panels(window);
 	if (state->actions[chosen])
 		gz_window_run_action(window, state->actions[chosen]);
-	else
+	else if (chosen < state->fixed)
 		gz_window_show_setting(window, state->settings[chosen]);
+	else
+		gz_window_show_object_row(window, chosen - state->fixed);
 }
 
 bool gz_window_is_search_starting(const struct gz_window *window)

@@ -95,6 +95,9 @@ struct gz_window_part {
 	bool (*grab)(struct gz_window *window, int button, int modifiers);
 	/** The mouse, which the part has grabbed, moved by this to window->cursor. */
 	void (*drag)(struct gz_window *window, double right, double down);
+	/** The left button was clicked on the picture at window->cursor, without a drag and without
+	 *  a modifier, and nothing but the camera had grabbed it. Only with a scene. */
+	void (*click)(struct gz_window *window);
 	/** The wheel was turned over the picture, notches. Only with a scene. */
 	void (*wheel)(struct gz_window *window, double up);
 	/** Whether what the part draws over the picture changes with this gaze. */
