@@ -133,7 +133,9 @@ static enum gz_result isosurface_pick(struct gz_drawer *drawer,
 		.camera = request->camera,
 		.rays = request->settings,
 	};
-	const enum gz_result result = add_caster(self);
+	/* A build without Embree says so once, when the drawer of cpu is asked for. */
+	const enum gz_result result =
+		gz_surface_caster_present() ? add_caster(self) : GZ_ERR_UNSUPPORTED;
 	return result == GZ_OK ? gz_surface_caster_pick(self->caster, &surfaces, request, out_pick)
 			       : result;
 }

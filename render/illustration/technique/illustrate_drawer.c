@@ -1,4 +1,5 @@
-/* The technique's drawer: a caster of rays or a rasteriser, and what it shows. */
+/* The technique's drawer: a caster of rays or a rasteriser, and what it shows. Rays find what is at
+ * a place, so the drawer of gl has a caster, too, once it is needed. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,8 +14,10 @@ static const char cpu_name[] = "cpu", gl_name[] = "gl";
 
 struct illustrate_drawer {
 	struct gz_drawer base;
+	const struct gz_log *log;
+	struct gz_backend_params params;
 	struct gz_illustrate_raster *raster; /* NULL: the backend is cpu */
-	struct gz_illustrate_caster *caster; /* NULL: the backend is gl */
+	struct gz_illustrate_caster *caster; /* NULL: none yet */
 	struct gz_object *objects;           /* shown */
 	size_t count;
 };
@@ -37,9 +40,11 @@ static enum gz_result illustrate_show(struct gz_drawer *drawer, const struct gz_
 	if (!copy)
 		return GZ_ERR_NO_MEM;
 	memcpy(copy, objects, count * sizeof *copy);
-	const enum gz_result result =
-		self->raster ? gz_illustrate_raster_show(self->raster, objects, count)
-			     : gz_illustrate_caster_show(self->caster, objects, count);
+	enum gz_result result = GZ_OK;
+	if (self->raster)
+		result = gz_illustrate_raster_show(self->raster, objects, count);
+	if (self->caster && result == GZ_OK)
+		result = gz_illustrate_caster_show(self->caster, objects, count);
 	if (result != GZ_OK) {
 		free(copy);
 		return result;
@@ -80,23 +85,41 @@ static enum gz_result illustrate_draw(struct gz_drawer *drawer, const struct gz_
 	return gz_illustrate_caster_draw(self->caster, &illustrated, image, NULL, out_stats);
 }
 
+/* Make the caster of a drawer whose backend is gl, and show it the objects. */
+static enum gz_result add_caster(struct illustrate_drawer *self)
+{
+	if (self->caster)
+		return GZ_OK;
+	enum gz_result result =
+		gz_illustrate_caster_create(&self->params, self->log, &self->caster);
+	if (result == GZ_OK)
+		result = gz_illustrate_caster_show(self->caster, self->objects, self->count);
+	if (result != GZ_OK)
+		gz_illustrate_caster_destroy(&self->caster);
+	return result;
+}
+
 static enum gz_result illustrate_pick(struct gz_drawer *drawer,
 				      const struct gz_pick_request *request,
 				      struct gz_pick *out_pick)
 {
-	struct gz_illustrate_caster *caster = illustrate_of(drawer)->caster;
+	struct illustrate_drawer *self = illustrate_of(drawer);
 	const struct gz_ray_params *rays = request->settings;
-	if (!caster) /* rays find what is at a place */
-		return GZ_ERR_UNSUPPORTED;
 	if (!gz_ray_params_valid(rays))
 		return GZ_ERR_INVAL;
+	/* A build without Embree says so once, when the drawer of cpu is asked for. */
+	if (!gz_illustrate_caster_present())
+		return GZ_ERR_UNSUPPORTED;
+	const enum gz_result result = add_caster(self);
+	if (result != GZ_OK)
+		return result;
 	const struct gz_illustrate_shot illustrated = {
 		.camera = request->camera,
 		.look = &rays->illustration,
 		.clip = &rays->clip,
 		.isovalue = rays->surface.isovalue,
 	};
-	return gz_illustrate_caster_pick(caster, &illustrated, request, out_pick);
+	return gz_illustrate_caster_pick(self->caster, &illustrated, request, out_pick);
 }
 
 static bool illustrate_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
@@ -176,6 +199,9 @@ enum gz_result gz_illustrate_create(const char *backend, const struct gz_backend
 	if (!self)
 		return GZ_ERR_NO_MEM;
 	self->base.ops = &illustrate_ops;
+	self->log = log;
+	if (params)
+		self->params = *params;
 	result = takes_gl(backend) ? gz_illustrate_raster_create(params, log, &self->raster)
 				   : gz_illustrate_caster_create(params, log, &self->caster);
 	if (result != GZ_OK) {
