@@ -27,6 +27,13 @@ const struct gz_option gz_attention_options[] = {
 	{ "attention.budget_ms", GZ_OPTION_DOUBLE, AT(budget_ms), 0, 10000, .preset = "0",
 	  .help = "time that 95 of 100 frames may take, ms; the plan gets as coarse as needed; "
 		  "0 = no limit" },
+	{ "attention.importance", GZ_OPTION_DOUBLE, AT(importance), 0, 1, .preset = "0",
+	  .help = "how far the object that is looked at is raised in importance, 0 (not) to 1" },
+	{ "attention.importance_dwell_ms", GZ_OPTION_DOUBLE, AT(importance_dwell_ms), 0, 10000,
+	  .preset = "200", .help = "how long an object is looked at before it is raised, ms" },
+	{ "attention.importance_fade_ms", GZ_OPTION_DOUBLE, AT(importance_fade_ms), 1, 10000,
+	  .preset = "200",
+	  .help = "how long it fades in, and out once something else is looked at, ms" },
 };
 const size_t gz_attention_option_count =
 	sizeof gz_attention_options / sizeof gz_attention_options[0];

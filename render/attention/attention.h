@@ -40,6 +40,10 @@ struct gz_attention_params {
 	double hold_ms;         /**< how long the plan of a lost gaze is kept */
 	double widen_ms;        /**< how long the plan then takes to become uniform; 0: it stays */
 	double budget_ms;       /**< frame time at the 95th percentile; 0: no budget */
+	double importance;      /**< how far the object that is looked at is raised in importance,
+				   [0, 1]: render/attention/interest.h */
+	double importance_dwell_ms; /**< after so long a look */
+	double importance_fade_ms;  /**< how long it fades in and out */
 };
 
 /** Table over struct gz_attention_params. */

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import unittest
 
-from picture import run, write_scene
+from picture import run, write_labels, write_scene
 
 GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
@@ -63,6 +63,40 @@ class Session(unittest.TestCase):
             frames = [line.split("\t") for line in source if line[0] not in "#!"]
         self.assertEqual([frame[-2] for frame in frames], ["0", "1", "1", "1", "1"])
         self.replay_is_the_same()
+
+    def record_looks(self, importance):
+        """Two regions side by side, in which the gaze rests on one, then on the other."""
+        scene = write_labels(self.place.name, "[render]", "technique = illustrate", "[camera]",
+                             "eye = 0 -2.5 0", "[illustration]", "scene_information = importance")
+        with open(self.path("looks.gzl"), "w", encoding="utf-8") as out:
+            out.write("#gazecast-log 1\n#tracker synthetic\n#rate_hz 100\n")
+            for i in range(120):
+                out.write("%d\t\t%d\t%s%s\n" % (
+                    i, 10**9 + i * 10**7, ("%g\t0.5\t1" % (0.45 if i < 50 else 0.55)),
+                    2 * ("\t\t\t0" + "\t" * 8)))
+        self.good(scene, "--size", "64x48", "--gaze", self.path("looks.gzl"), "--fps", 20,
+                  "--frames", 22, "--attention.importance", importance, "--record",
+                  self.path("%s.session" % importance), "--out",
+                  self.path("%s-%%d.png" % importance))
+
+    def test_importance_by_gaze_replays_bit_for_bit(self):
+        self.record_looks(0)
+        self.record_looks(1)
+        with open(self.path("1.session/frames.tsv"), encoding="utf-8") as source:
+            raised = [line.split("\t") for line in source if line.startswith("!raise")]
+        self.assertEqual(len({line[1] for line in raised if line[1] != "0"}), 2, raised)
+        self.good("--replay", self.path("1.session"), "--out", self.path("is-%d.png"))
+        for k in range(22):
+            self.assertTrue(self.read("1-%d.png" % k) == self.read("is-%d.png" % k),
+                            "picture %d is another" % k)
+        # Nothing is raised before the first look has lasted, and then one after the other.
+        self.assertTrue(self.read("1-3.png") == self.read("0-3.png"))
+        self.assertTrue(self.read("1-9.png") != self.read("0-9.png"))
+        self.assertTrue(self.read("1-21.png") != self.read("1-9.png"))
+        # What is raised is what was recorded, not what the replay makes of the gaze.
+        self.good("--replay", self.path("1.session"), "--attention.importance", 0, "--out",
+                  self.path("again-%d.png"))
+        self.assertTrue(self.read("1-21.png") == self.read("again-21.png"))
 
     def test_replay_does_not_depend_on_frame_times(self):
         self.record("--attention.budget_ms", 0.001, frames=12)

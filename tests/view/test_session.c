@@ -159,6 +159,25 @@ static void check_round_trip(const struct gz_session_frame *frame)
 	gz_text_free(&text);
 }
 
+static void what_is_raised_is_read_back_to_the_bit(void **state)
+{
+	(void)state;
+	struct gz_raised raised = { UINT32_MAX, 1.0 / 3 }, back;
+	static const char *const wrong[] = { "!raise\t7", "!raise\t7\t1.5", "!raise\t-1\t0",
+					     "!raise\t7\t0\t0", "!raise\t7\tnan" };
+	struct gz_text text = { 0 };
+	char line[32];
+	gz_session_print_raised(&raised, &text);
+	text.bytes[text.length - 1] = '\0';
+	assert_int_equal(gz_session_parse_raised(text.bytes, &back), GZ_OK);
+	assert_true(gz_raised_same(&raised, &back));
+	gz_text_free(&text);
+	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+		snprintf(line, sizeof line, "%s", wrong[i]);
+		assert_int_equal(gz_session_parse_raised(line, &back), GZ_ERR_FORMAT);
+	}
+}
+
 static void frame_is_read_back_to_the_bit(void **state)
 {
 	struct gz_session_frame frame = make_frame(*state, 123456789012345);
@@ -511,6 +530,7 @@ TEST_SUITE(session)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(frame_is_read_back_to_the_bit),
+		TEST(what_is_raised_is_read_back_to_the_bit),
 		TEST(session_is_read_back_with_its_changes),
 		TEST(scene_file_has_the_settings_of_the_start),
 		TEST(spacing_tables_are_copied),

@@ -57,6 +57,16 @@ struct gz_frame_maker {
 	struct gz_gaze_reading reading; /* the last one passed to the attention */
 	struct gz_focus focus;          /* the attention's answer */
 	struct gz_focus made;           /* focus of the last frame made */
+	struct gz_interest interest;    /* which object is looked at */
+	struct gz_raised raised;        /* for the next frame */
+	struct gz_raised raised_shown;  /* by the renderer */
+	struct gz_object_style raised_style;
+	struct {
+		struct gz_camera camera;
+		struct gz_ray_params rays;
+		int width, height;
+	} last; /* what the last frame showed; valid with any_shown */
+	bool any_shown;
 	struct {
 		int method, width, height;
 	} spent; /* method and size the budget's times belong to */
@@ -168,6 +178,21 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
+/* Note how the object is shown that is raised in importance. Its importance without the gaze is
+ * that of the scene. */
+static void style_raised(struct gz_frame_maker *maker)
+{
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	const size_t count = gz_scene_list_objects(&maker->scene, objects, GZ_SCENE_LISTED_MAX);
+	for (size_t i = 0; i < count; i++) {
+		if (objects[i].id != maker->raised_shown.id)
+			continue;
+		maker->raised_style = objects[i].style ? *objects[i].style : gz_object_style_plain;
+		maker->raised_style.importance = gz_raised_importance(
+			maker->raised_style.importance, maker->raised_shown.share);
+	}
+}
+
 /* What the scene shows, with the revisions of now. */
 static size_t list_scene_objects(const struct gz_frame_maker *maker,
 				 struct gz_object out_objects[GZ_SCENE_LISTED_MAX])
@@ -176,6 +201,8 @@ static size_t list_scene_objects(const struct gz_frame_maker *maker,
 	for (size_t i = 0; i < count; i++) {
 		out_objects[i].transfer_revision = maker->transfer_revision;
 		out_objects[i].data_revision = maker->data_revision;
+		if (maker->raised_shown.id != 0 && out_objects[i].id == maker->raised_shown.id)
+			out_objects[i].style = &maker->raised_style;
 	}
 	return count;
 }
@@ -453,6 +480,47 @@ enum gz_result gz_frame_show_taken(struct gz_frame_maker *maker)
 	return r;
 }
 
+static uint32_t object_at(struct gz_frame_maker *maker, const struct gz_camera *camera,
+			  const struct gz_ray_params *rays, const int size_px[2],
+			  struct gz_point point)
+{
+	const struct gz_pick_request request = {
+		.camera = camera,
+		.settings = rays,
+		.width = size_px[0],
+		.height = size_px[1],
+		.x = (double)point.x * size_px[0],
+		.y = (double)point.y * size_px[1],
+	};
+	struct gz_pick pick;
+	if (!maker->pictures || !(point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1) ||
+	    gz_picture_maker_pick(maker->pictures, &request, &pick) != GZ_OK)
+		return 0;
+	return gz_pick_most_seen(&pick);
+}
+
+/* The object at the focus, as the last frame showed it; a lost gaze looks at none. */
+static uint32_t attended_object(struct gz_frame_maker *maker)
+{
+	const int size_px[2] = { maker->last.width, maker->last.height };
+	if (!maker->any_shown || maker->attention.state == GZ_ATTENTION_WIDEN)
+		return 0;
+	return object_at(maker, &maker->last.camera, &maker->last.rays, size_px,
+			 maker->focus.point);
+}
+
+/* Follow what is looked at. */
+static void attend_object(struct gz_frame_maker *maker, const struct gz_attention_params *params,
+			  int64_t time_ns)
+{
+	if (params->importance <= 0)
+		maker->interest = (struct gz_interest) { 0 };
+	else
+		maker->interest =
+			gz_interest_step(maker->interest, params, attended_object(maker), time_ns);
+	maker->raised = gz_interest_raised(&maker->interest, params);
+}
+
 bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
 		     const struct gz_gaze_reading *reading, const struct gz_display *display,
 		     int64_t time_ns)
@@ -470,7 +538,19 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
 	gz_attention_set_params(&maker->attention, params);
 	maker->reading = *reading;
 	maker->focus = gz_attention_step(&maker->attention, &gaze, display, time_ns);
-	return !maker->any_made || !gz_focus_same(&maker->focus, &maker->made);
+	attend_object(maker, params, time_ns);
+	return !maker->any_made || !gz_focus_same(&maker->focus, &maker->made) ||
+	       !gz_raised_same(&maker->raised, &maker->raised_shown);
+}
+
+void gz_frame_set_raised(struct gz_frame_maker *maker, const struct gz_raised *raised)
+{
+	maker->raised = *raised;
+}
+
+struct gz_raised gz_frame_raised(const struct gz_frame_maker *maker)
+{
+	return maker->raised;
 }
 
 void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
@@ -508,7 +588,7 @@ void gz_frame_forget(struct gz_frame_maker *maker)
 
 bool gz_frame_settled(const struct gz_frame_maker *maker)
 {
-	return gz_attention_settled(&maker->attention);
+	return gz_attention_settled(&maker->attention) && gz_interest_at_rest(&maker->interest);
 }
 
 bool gz_frame_refinable(const struct gz_frame_maker *maker)
@@ -705,10 +785,14 @@ static enum gz_result follow_objects(struct gz_frame_maker *maker,
 				     const struct gz_scene_settings *settings)
 {
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
-	if (!gz_scene_show_as(settings, &maker->scene.settings))
+	const bool changed = gz_scene_show_as(settings, &maker->scene.settings);
+	if (!changed && gz_raised_same(&maker->raised, &maker->raised_shown))
 		return GZ_OK;
 	drop_spares(maker);
-	maker->any_made = false;
+	maker->raised_shown = maker->raised;
+	if (maker->raised_shown.id != 0)
+		style_raised(maker);
+	maker->any_made = maker->any_made && !changed;
 	const size_t count = list_scene_objects(maker, objects);
 	if (count > 0)
 		return gz_picture_maker_show(maker->pictures, objects, count);
@@ -858,7 +942,11 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	if (r != GZ_OK)
 		return r;
 	maker->made = maker->focus;
-	maker->any_made = true;
+	maker->any_made = maker->any_shown = true;
+	maker->last.camera = request->settings->camera;
+	maker->last.rays = request->settings->rays;
+	maker->last.width = request->width;
+	maker->last.height = request->height;
 	tell_spent(maker, request, record.total_ms - record.prepare_ms);
 	record.budget = budget_state(maker, &record);
 	record.backend = gz_frame_backend(maker); /* cpu may have taken over */
@@ -869,19 +957,8 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_settings *settings,
 			    int width, int height, struct gz_point point)
 {
-	const struct gz_pick_request request = {
-		.camera = &settings->camera,
-		.settings = &settings->rays,
-		.width = width,
-		.height = height,
-		.x = (double)point.x * width,
-		.y = (double)point.y * height,
-	};
-	struct gz_pick pick;
-	if (!maker->pictures || !(point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1) ||
-	    gz_picture_maker_pick(maker->pictures, &request, &pick) != GZ_OK)
-		return 0;
-	return gz_pick_most_seen(&pick);
+	const int size_px[2] = { width, height };
+	return object_at(maker, &settings->camera, &settings->rays, size_px, point);
 }
 
 unsigned gz_frame_texture(const struct gz_frame_maker *maker)

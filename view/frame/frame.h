@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/attention/interest.h"
 #include "render/picture/image.h"
 #include "render/scene/scene.h"
 #include "render/technique/technique.h"
@@ -152,21 +153,28 @@ void gz_frame_expect_time_point(struct gz_frame_maker *maker, int time_point,
  *
  * @param reading  its point is on @p display
  * @param time_ns  of the frame, from any origin: the log's time, otherwise the host's
- * @return whether the next frame's plan differs from that of the last frame made; true before the
- *         first frame
+ * @return whether the next frame's plan, or what it raises in importance, differs from that of the
+ *         last frame made; true before the first frame
  */
 bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_params *params,
 		     const struct gz_gaze_reading *reading, const struct gz_display *display,
 		     int64_t time_ns);
 
 /**
- * Set a recorded focus in place of gz_frame_attend(), so that a replay depends neither on the times
- * of the recorded frames nor on those of its own.
+ * Set a recorded focus, and what was raised, in place of gz_frame_attend(), so that a replay
+ * depends neither on the times of the recorded frames nor on those of its own.
  *
  * @param reading  the recorded gaze, for the frame's record
  */
 void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
 			const struct gz_focus *focus);
+
+/** Raise an object in importance from the next frame on, as it was recorded. gz_frame_attend()
+ *  decides anew. */
+void gz_frame_set_raised(struct gz_frame_maker *maker, const struct gz_raised *raised);
+
+/** The object that the next frame raises in importance because it is looked at. */
+struct gz_raised gz_frame_raised(const struct gz_frame_maker *maker);
 
 /** The reading last passed to gz_frame_attend() or gz_frame_set_focus(). */
 const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *maker);
@@ -229,8 +237,8 @@ void gz_frame_drop_labels(struct gz_frame_maker *maker);
 /** Drop what earlier frames accumulated: temporal.accumulate starts again with the next frame. */
 void gz_frame_forget(struct gz_frame_maker *maker);
 
-/** Whether the plan stays the same while the gaze does; otherwise call gz_frame_attend() each
- * frame. */
+/** Whether plan and importance stay the same while the gaze does; otherwise call gz_frame_attend()
+ * each frame. */
 bool gz_frame_settled(const struct gz_frame_maker *maker);
 
 /** Whether rendering the same frame again may give a finer picture: the budget has made the plan

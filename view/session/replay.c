@@ -145,6 +145,7 @@ enum gz_result gz_replay_ready(struct gz_replay *replay)
 	if (!replay->frame.kept)
 		gz_frame_forget(replay->maker);
 	gz_frame_set_focus(replay->maker, &replay->frame.reading, &replay->frame.focus);
+	gz_frame_set_raised(replay->maker, &replay->frame.raised);
 	return r;
 }
 

@@ -215,6 +215,24 @@ static void take_display(struct fields *fields, struct gz_display *display)
 	expect(fields, gz_display_valid(display));
 }
 
+void gz_session_print_raised(const struct gz_raised *raised, struct gz_text *text)
+{
+	gz_text_add(text, GZ_SESSION_RAISE_WORD "\t%" PRIu32 "\t%.17g\n", raised->id,
+		    raised->share);
+}
+
+enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised)
+{
+	char *fields[3];
+	long long id;
+	double share;
+	if (split_fields(line, fields, 3) != 3 || !read_int(fields[1], 0, UINT32_MAX, &id) ||
+	    !gz_number_parse(fields[2], &share) || !(share >= 0 && share <= 1))
+		return GZ_ERR_FORMAT;
+	*out_raised = (struct gz_raised) { (uint32_t)id, share };
+	return GZ_OK;
+}
+
 enum gz_result gz_session_parse_frame(char *line, struct gz_session_frame *out_frame,
 				      const char **out_what)
 {

@@ -20,7 +20,7 @@
 #include "base/result.h"
 #include "base/text.h"
 #include "protocol/gaze.h"
-#include "render/attention/attention.h"
+#include "render/attention/interest.h"
 #include "render/data/volume.h"
 #include "view/gaze/gaze_source.h"
 
@@ -40,6 +40,7 @@
 /** First words of the lines between frames. */
 #define GZ_SESSION_SET_WORD      "!set"
 #define GZ_SESSION_TRANSFER_WORD "!transfer"
+#define GZ_SESSION_RAISE_WORD    "!raise"
 
 /** What all frames of a session share. */
 struct gz_session_header {
@@ -58,12 +59,25 @@ struct gz_session_frame {
 	/** The gaze. Not stored: connected, seq and sample_ns, and the point of an unknown gaze. */
 	struct gz_gaze_reading reading;
 	struct gz_focus focus; /**< the plan was made for it */
-	bool kept;             /**< earlier frames contributed: temporal.accumulate */
-	double took_ms;        /**< for statistics */
+	/** What was raised in importance, which is stored in a line of its own. */
+	struct gz_raised raised;
+	bool kept;      /**< earlier frames contributed: temporal.accumulate */
+	double took_ms; /**< for statistics */
 };
 
 /** Append the lines of the header, from GZ_SESSION_FIRST_LINE to the names of the columns. */
 void gz_session_print_header(const struct gz_session_header *header, struct gz_text *text);
+
+/** Append the line that says what is raised in importance from the next frame on. */
+void gz_session_print_raised(const struct gz_raised *raised, struct gz_text *text);
+
+/**
+ * Parse that line.
+ *
+ * @param[in,out] line  without its newline, NUL-terminated; it is changed
+ * @retval GZ_ERR_FORMAT  not a number of an object and a share
+ */
+enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised);
 
 /** Append the line of a frame with its newline. */
 void gz_session_print_frame(const struct gz_session_frame *frame, struct gz_text *text);

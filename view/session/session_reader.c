@@ -251,7 +251,18 @@ static enum gz_result parse_end_line(struct gz_session_reader *reader)
 	return reader->ended = GZ_ERR_END;
 }
 
+static enum gz_result parse_raise_line(struct gz_session_reader *reader,
+				       struct gz_session_state *state)
+{
+	strcpy(reader->scratch, reader->line);
+	if (gz_session_parse_raised(reader->scratch, &state->raised) == GZ_OK)
+		return GZ_OK;
+	return refuse_session_line(reader, GZ_SESSION_RAISE_WORD
+				   ": not an object and a share; the file is damaged");
+}
+
 static enum gz_result parse_frame_line(struct gz_session_reader *reader,
+				       const struct gz_session_state *state,
 				       struct gz_session_frame *out_frame)
 {
 	struct gz_session_frame frame;
@@ -265,6 +276,7 @@ static enum gz_result parse_frame_line(struct gz_session_reader *reader,
 					   "time_ns: earlier than that of the previous frame");
 	reader->time_ns = frame.time_ns;
 	reader->frames++;
+	frame.raised = state->raised;
 	*out_frame = frame;
 	return GZ_OK;
 }
@@ -284,10 +296,12 @@ enum gz_result gz_session_read(struct gz_session_reader *reader, struct gz_sessi
 			(void)parse_set_line(reader, state);
 		else if (begins_with(reader->line, GZ_SESSION_TRANSFER_WORD))
 			(void)parse_transfer_line(reader, state);
+		else if (begins_with(reader->line, GZ_SESSION_RAISE_WORD))
+			(void)parse_raise_line(reader, state);
 		else if (is_end(reader))
 			(void)parse_end_line(reader);
 		else
-			return parse_frame_line(reader, out_frame);
+			return parse_frame_line(reader, state, out_frame);
 	}
 	return reader->ended;
 }

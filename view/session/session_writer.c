@@ -32,7 +32,8 @@ struct gz_session_writer {
 	int tables;                        /* spacing tables written so far */
 	struct gz_scene_settings settings; /* of the last frame in the file */
 	struct gz_transfer transfer;
-	bool gaze_known; /* gaze_ns is valid */
+	struct gz_raised raised; /* as of the last frame */
+	bool gaze_known;         /* gaze_ns is valid */
 	int64_t gaze_ns;
 	uint64_t gaze_samples;
 	struct gz_gaze_log_writer gaze;
@@ -342,6 +343,9 @@ enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 		print_transfer(transfer, &writer->lines);
 		writer->transfer = *transfer;
 	}
+	if (!gz_raised_same(&writer->raised, &frame->raised))
+		gz_session_print_raised(&frame->raised, &writer->lines);
+	writer->raised = frame->raised;
 	gz_session_print_frame(frame, &writer->lines);
 	const enum gz_result flushed = flush(writer);
 	writer->frames += flushed == GZ_OK;
@@ -450,6 +454,7 @@ enum gz_result gz_recording_add(struct gz_session_writer *writer,
 		.display = *request->display,
 		.reading = *gz_frame_reading(maker),
 		.focus = record->focus,
+		.raised = gz_frame_raised(maker),
 		.kept = record->kept,
 		.took_ms = record->total_ms,
 	};

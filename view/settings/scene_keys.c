@@ -293,6 +293,7 @@ static const struct {
 	{ "foveation.blend_px", with_borders },
 	{ "foveation.step_floor", by_distance },
 	{ "attention.budget_ms", with_a_scale },
+	{ "attention.importance", by_illustrate },
 	{ "attention.", with_the_gaze },
 	{ "temporal.weight", with_the_past },
 	{ "view.split", with_a_split },

@@ -1,0 +1,72 @@
+#include "render/attention/interest.h"
+
+#include <math.h>
+
+#include "base/clock.h"
+
+static void look_at(struct gz_interest *interest, uint32_t looked_at, int64_t now_ns)
+{
+	if (!interest->started || looked_at != interest->looked_at)
+		interest->since_ns = now_ns;
+	interest->looked_at = looked_at;
+	interest->started = true;
+}
+
+/* The object to be raised: a glance at another one changes nothing. */
+static uint32_t wanted_object(const struct gz_interest *interest,
+			      const struct gz_attention_params *params)
+{
+	const double looked_ms = gz_ns_to_ms(interest->now_ns - interest->since_ns);
+	return looked_ms >= params->importance_dwell_ms ? interest->looked_at : interest->raised;
+}
+
+static void fade(struct gz_interest *interest, uint32_t wanted, double step)
+{
+	if (interest->raised != wanted) {
+		interest->fade = fmax(0, interest->fade - step);
+		if (interest->fade > 0)
+			return;
+		/* It fades in from the next step on. */
+		interest->raised = wanted;
+		return;
+	}
+	interest->fade = wanted == 0 ? 0 : fmin(1, interest->fade + step);
+}
+
+struct gz_interest gz_interest_step(struct gz_interest interest,
+				    const struct gz_attention_params *params, uint32_t looked_at,
+				    int64_t now_ns)
+{
+	if (interest.started && now_ns < interest.now_ns)
+		now_ns = interest.now_ns;
+	const double passed_ms = interest.started ? gz_ns_to_ms(now_ns - interest.now_ns) : 0;
+	interest.now_ns = now_ns;
+	look_at(&interest, looked_at, now_ns);
+	fade(&interest, wanted_object(&interest, params), passed_ms / params->importance_fade_ms);
+	return interest;
+}
+
+struct gz_raised gz_interest_raised(const struct gz_interest *interest,
+				    const struct gz_attention_params *params)
+{
+	const double fade = interest->fade, smooth = fade * fade * (3 - 2 * fade);
+	const double share = params->importance * smooth;
+	return share > 0 ? (struct gz_raised) { interest->raised, share }
+			 : (struct gz_raised) { 0 };
+}
+
+bool gz_interest_at_rest(const struct gz_interest *interest)
+{
+	return interest->raised == interest->looked_at &&
+	       (interest->raised == 0 || interest->fade >= 1);
+}
+
+bool gz_raised_same(const struct gz_raised *a, const struct gz_raised *b)
+{
+	return a->id == b->id && a->share == b->share;
+}
+
+double gz_raised_importance(double importance, double share)
+{
+	return importance + (1 - importance) * share;
+}
