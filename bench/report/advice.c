@@ -131,6 +131,27 @@ static void percent_words(double share, char text[static GZ_NAMES_SIZE])
 	snprintf(text, GZ_NAMES_SIZE, percent < 9.95 ? "%.2g %%" : "%.0f %%", percent);
 }
 
+/* The ratio of the mean times, and between which values it lies. */
+static void say_ratio(const struct teller *teller, const struct gz_series *series)
+{
+	char text[GZ_NAMES_SIZE];
+	const struct gz_interval *interval = &series->ratio_interval;
+	const double ratio = series->ratio_of_means;
+	const bool slower = ratio < 1;
+	snprintf(text, sizeof text, "%.3g times as %s", slower ? 1 / ratio : ratio,
+		 slower ? "long" : "fast");
+	stress(teller, text);
+	if (isnan(interval->low)) {
+		say(teller, " (mean time over mean time)");
+		return;
+	}
+	snprintf(text, sizeof text,
+		 " (mean time over mean time; 95 %% confidence interval %.3g to %.3g)",
+		 slower ? 1 / interval->high : interval->low,
+		 slower ? 1 / interval->low : interval->high);
+	say(teller, text);
+}
+
 static void say_time(const struct teller *teller, const struct gz_series *series, const char *takes)
 {
 	char text[GZ_NAMES_SIZE], share[GZ_NAMES_SIZE];
@@ -146,12 +167,7 @@ static void say_time(const struct teller *teller, const struct gz_series *series
 	snprintf(text, sizeof text, " where a ray for every pixel takes %.3g ms: ",
 		 group->series[group->standard].typical_ms);
 	say(teller, text);
-	const double ratio = series->ratio_of_means;
-	if (ratio < 1)
-		snprintf(text, sizeof text, "%.3g times as long", 1 / ratio);
-	else
-		snprintf(text, sizeof text, "%.3g times as fast", ratio);
-	stress(teller, text);
+	say_ratio(teller, series);
 	const int *size = teller->study->sizes[group->size];
 	percent_words(series->rays / ((double)size[0] * size[1]), share);
 	say(teller, ", with ");
@@ -203,6 +219,37 @@ static void tell_standard(const struct teller *teller, size_t winner)
 	say_errors(teller, nearest);
 }
 
+/* How far times can be trusted, and what of the claim they leave open. */
+static void tell_noise(const struct teller *teller, size_t told)
+{
+	char text[2 * GZ_NAMES_SIZE], noise[GZ_NAMES_SIZE], words[GZ_NAMES_SIZE];
+	const struct gz_group *group = teller->group;
+	const enum gz_error_kind kind = gz_error_metrics[teller->question->measure].kind;
+	if (isnan(group->noise))
+		return;
+	percent_words(group->noise, noise);
+	say(teller, " Noise: ");
+	say(teller, group->noise_of_frames
+			    ? "standard's frames of one place should take equally long"
+			    : "standard ignores the gaze and should take equally long everywhere");
+	snprintf(text, sizeof text, "; 90 of 100 of its times lie within ±%s.", noise);
+	say(teller, text);
+	if (told == GZ_SERIES_NONE)
+		return;
+	const size_t rival =
+		gz_group_rival(group, told, teller->question->reference, teller->question->measure,
+			       gz_error_cost(kind, teller->question->bound));
+	if (rival == GZ_SERIES_NONE)
+		return;
+	gz_variant_words(&teller->study->variants[group->series[rival].variant], words);
+	snprintf(text, sizeof text,
+		 "Warning: %s holds the bound too, and its time (%.3g ms) differs by less than "
+		 "this noise. Which of both is faster is not known.",
+		 words, group->series[rival].typical_ms);
+	say(teller, " ");
+	stress(teller, text);
+}
+
 static void tell_fastest(const struct teller *teller)
 {
 	const struct gz_group *group = teller->group;
@@ -230,6 +277,7 @@ void gz_advice_tell(const struct gz_study *study, const struct gz_group *group,
 		tell_standard(&teller, series);
 	else
 		tell_winner(&teller, series);
+	tell_noise(&teller, series);
 }
 
 /* ---- scene files ---- */

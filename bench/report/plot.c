@@ -323,11 +323,27 @@ static int left_px(const struct gz_plot *plot, const struct gz_canvas *canvas)
 	return wanted > canvas->left ? wanted : canvas->left;
 }
 
+/* What a reader must know of an axis that is not even, or runs the other way. */
+static const char *axis_remark(const struct gz_plot_axis *axis)
+{
+	if (axis->logarithmic)
+		return axis->falls ? ", logarithmic, reversed" : ", logarithmic";
+	return axis->falls ? ", reversed" : "";
+}
+
+static void set_axis_text(struct gz_text *settings, const char *name, const char *title,
+			  const struct gz_plot_axis *axis)
+{
+	char text[3 * GZ_PLOT_LABEL_SIZE];
+	snprintf(text, sizeof text, "%s%s", title, axis_remark(axis));
+	gz_chart_set_text(settings, name, text);
+}
+
 static void add_plot_settings(const struct gz_plot *plot, const struct gz_canvas *canvas,
 			      struct gz_text *settings)
 {
-	gz_chart_set_text(settings, "title_text", plot->title);
-	gz_chart_set_text(settings, "x_title", plot->x.title);
+	set_axis_text(settings, "title_text", plot->title, &plot->y);
+	set_axis_text(settings, "x_title", plot->x.title, &plot->x);
 	gz_chart_set_text(settings, "bound_text", plot->bound_text);
 	const double span = plot->y.logarithmic ? 1 : plot->y.last - plot->y.first;
 	gz_text_add(settings,

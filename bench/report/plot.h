@@ -42,8 +42,9 @@ struct gz_plot_curve {
 
 /** The chart. */
 struct gz_plot {
-	char title[2 * GZ_PLOT_LABEL_SIZE];
-	struct gz_plot_axis x, y;
+	char title[2 * GZ_PLOT_LABEL_SIZE]; /**< above the chart: what y shows */
+	struct gz_plot_axis x, y;           /**< titles say by themselves if they are logarithmic
+					     *   or reversed */
 	struct gz_plot_curve *curves;
 	size_t curve_count;
 	bool join_marked; /**< draw a line through the marked points, by x: the front */

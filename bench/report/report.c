@@ -289,8 +289,8 @@ static json_t *make_growth(const struct gz_summary *summary, const struct gz_cha
 			append_figure(
 				figures,
 				gz_page_figure(charts, name, "wide",
-					       "How the time of a frame grows, both axes "
-					       "logarithmic. Before each name its exponent."));
+					       "How the time of a frame grows. Before each name "
+					       "its exponent."));
 		gz_variant_words(&summary->study->variants[scaling->variant], words);
 		json_t *cells = add_table_row(growth, words);
 		add_cell(cells, kinds[scaling->kind], NULL);
@@ -306,6 +306,14 @@ static json_t *make_growth(const struct gz_summary *summary, const struct gz_cha
 
 /* ---- groups ---- */
 
+static void add_interval(const struct gz_interval *interval, json_t *variant)
+{
+	char text[64] = "";
+	if (interval->low < interval->high) /* not of standard itself, nor NaN */
+		snprintf(text, sizeof text, "%.3g to %.3g", interval->low, interval->high);
+	gz_page_set_text(variant, "ratio_interval", text);
+}
+
 /* Add to a variant of summary.json the further values of its table rows. */
 static void add_series(const struct gz_summary *summary, const struct gz_group *group,
 		       const struct gz_series *series, json_t *variant)
@@ -317,6 +325,7 @@ static void add_series(const struct gz_summary *summary, const struct gz_group *
 	char words[GZ_NAMES_SIZE];
 	gz_variant_words(&summary->study->variants[series->variant], words);
 	gz_page_set_text(variant, "words", words);
+	add_interval(&series->ratio_interval, variant);
 	json_object_set(variant, "perceived",
 			json_object_get(errors, gz_error_metrics[GZ_PERCEIVED_FLIP].key));
 	json_object_set_new(variant, "rays_share",

@@ -32,8 +32,8 @@ static void set_error_axis(struct gz_plot *plot, enum gz_error_measure measure,
 			   enum gz_error_reference reference)
 {
 	const struct gz_error_metric *metric = &gz_error_metrics[measure];
-	const char *best = metric->kind == GZ_ERROR_FLIP   ? "0 = identical"
-			   : metric->kind == GZ_ERROR_SSIM ? "1 = identical"
+	const char *best = metric->kind == GZ_ERROR_FLIP   ? "0 = same"
+			   : metric->kind == GZ_ERROR_SSIM ? "1 = same"
 							   : "dB";
 	plot->y.from_zero = metric->kind == GZ_ERROR_FLIP;
 	plot->y.falls = gz_error_rises(metric->kind);
@@ -242,7 +242,8 @@ static enum gz_result draw_boxes_on(const struct gz_summary *summary, const stru
 	canvas.left = names_above ? 14 : (int)((characters + 2) * canvas.font_px * 0.58);
 	canvas.height = canvas.top + canvas.bottom + (int)rows * row_px(&canvas);
 	gz_chart_set_text(&settings, "title_text", "time of a frame, ms");
-	gz_chart_set_text(&settings, "x_title", "box: half of all frames; line: 99 of 100");
+	gz_chart_set_text(&settings, "x_title",
+			  "box: half of all frames; line: 99 of 100; logarithmic");
 	const double first = fmax(least, 1e-4) / 1.15, last = fmax(greatest, 2e-4) * 1.15;
 	gz_text_add(&settings,
 		    "x_first = %.9g\nx_last = %.9g\nx_decades = %.9g\nrows = %zu\n"

@@ -120,10 +120,13 @@ static enum gz_result fill_series(struct gz_series *series, const struct gz_stud
 	return GZ_OK;
 }
 
-/* Against standard, over the points that both have; points are sorted. */
-static void compare_with_standard(const struct gz_series *standard, struct gz_series *series)
+/* Against standard, over the points that both have; points are sorted. @p room for two times of
+ * each point. */
+static void compare_with_standard(const struct gz_series *standard, struct gz_series *series,
+				  double *room)
 {
 	double of_standard = 0, of_series = 0, ratios = 0, least = INFINITY;
+	double *over = room, *under = room + series->point_count;
 	size_t common = 0;
 	for (size_t i = 0, k = 0; i < series->point_count; i++) {
 		while (k < standard->point_count &&
@@ -137,10 +140,12 @@ static void compare_with_standard(const struct gz_series *standard, struct gz_se
 		of_series += series->points[i].frame_ms;
 		ratios += ratio;
 		least = fmin(least, ratio);
-		common++;
+		over[common] = standard->points[k].frame_ms;
+		under[common++] = series->points[i].frame_ms;
 	}
 	if (common == 0)
 		return;
+	series->ratio_interval = gz_ratio_interval(over, under, common);
 	series->ratio_of_means = of_standard / of_series;
 	series->mean_ratio = ratios / (double)common;
 	series->least_ratio = least;
@@ -160,15 +165,55 @@ static double mean_bound(const struct gz_study *study, const struct gz_group *gr
 	return sum / (double)series->point_count;
 }
 
-static void relate(const struct gz_study *study, struct gz_group *group)
+/* Of standard: the noise of the times of its points by camera. NaN if all cameras differ. */
+static double noise_of_points(const struct gz_study *study, const struct gz_series *standard)
+{
+	struct gz_kind_time *times = calloc(standard->point_count, sizeof times[0]);
+	if (!times)
+		return NAN;
+	for (size_t i = 0; i < standard->point_count; i++)
+		times[i] = (struct gz_kind_time) {
+			study->points[standard->points[i].point].camera,
+			standard->points[i].frame_ms,
+		};
+	const double noise = gz_noise_of(times, standard->point_count);
+	free(times);
+	return noise;
+}
+
+/* The same of the frames of each point. */
+static double noise_of_frames(const struct gz_study_row *const *rows, size_t count)
+{
+	struct gz_kind_time *times = calloc(count, sizeof times[0]);
+	if (!times)
+		return NAN;
+	for (size_t i = 0; i < count; i++)
+		times[i] = (struct gz_kind_time) { rows[i]->point, rows[i]->frame_ms };
+	const double noise = gz_noise_of(times, count);
+	free(times);
+	return noise;
+}
+
+/* @p rows are those of standard. */
+static void find_noise(const struct gz_study *study, struct gz_group *group,
+		       const struct gz_study_row *const *rows, size_t count)
+{
+	group->noise = noise_of_points(study, &group->series[group->standard]);
+	group->noise_of_frames = isnan(group->noise);
+	if (group->noise_of_frames)
+		group->noise = noise_of_frames(rows, count);
+}
+
+static void relate(const struct gz_study *study, struct gz_group *group, double *room)
 {
 	const int *size = study->sizes[group->size];
 	const double pixels = (double)size[0] * size[1];
 	for (size_t i = 0; i < group->series_count; i++) {
 		struct gz_series *series = &group->series[i];
 		series->ratio_of_means = series->mean_ratio = series->least_ratio = NAN;
+		series->ratio_interval = (struct gz_interval) { NAN, NAN };
 		if (group->standard != GZ_SERIES_NONE)
-			compare_with_standard(&group->series[group->standard], series);
+			compare_with_standard(&group->series[group->standard], series, room);
 		series->bound_share = series->rays / (mean_bound(study, group, series) * pixels);
 	}
 	group->bound_share = mean_bound(study, group, &group->series[0]);
@@ -351,16 +396,23 @@ double gz_curve_cost_at_time(const struct gz_group *group, const struct gz_curve
 	return least_on_curve(group, curve, &limit, out_series);
 }
 
+/* Whether a series has an error within @p cost at every point; one without an error says nothing.
+ */
+static bool holds_everywhere(const struct gz_series *series, enum gz_error_reference reference,
+			     enum gz_error_measure measure, double cost)
+{
+	const struct gz_error_summary *errors = &series->errors[reference][measure];
+	return errors->count == series->point_count &&
+	       gz_error_cost(gz_error_metrics[measure].kind, errors->worst) <= cost;
+}
+
 size_t gz_group_cheapest_within(const struct gz_group *group, enum gz_error_reference reference,
 				enum gz_error_measure measure, double cost)
 {
 	size_t best = GZ_SERIES_NONE;
 	for (size_t i = 0; i < group->series_count; i++) {
 		const struct gz_series *series = &group->series[i];
-		const struct gz_error_summary *errors = &series->errors[reference][measure];
-		/* A point without an error says nothing about it. */
-		if (errors->count < series->point_count ||
-		    !(gz_error_cost(gz_error_metrics[measure].kind, errors->worst) <= cost))
+		if (!holds_everywhere(series, reference, measure, cost))
 			continue;
 		if (best == GZ_SERIES_NONE || series->typical_ms < group->series[best].typical_ms)
 			best = i;
@@ -368,12 +420,29 @@ size_t gz_group_cheapest_within(const struct gz_group *group, enum gz_error_refe
 	return best;
 }
 
+size_t gz_group_rival(const struct gz_group *group, size_t series,
+		      enum gz_error_reference reference, enum gz_error_measure measure, double cost)
+{
+	size_t rival = GZ_SERIES_NONE;
+	double least = group->noise;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const double apart =
+			fabs(log(group->series[i].typical_ms / group->series[series].typical_ms));
+		if (i == series || !(apart < least) ||
+		    !holds_everywhere(&group->series[i], reference, measure, cost))
+			continue;
+		rival = i;
+		least = apart;
+	}
+	return rival;
+}
+
 static enum gz_result fill_group(const struct gz_study *study, const struct gz_study_row *rows,
 				 size_t count, struct gz_group *group)
 {
 	enum gz_result result = GZ_OK;
 	const struct gz_study_row **picked = calloc(count, sizeof(void *));
-	double *room = calloc(count, sizeof room[0]);
+	double *room = calloc(2 * count, sizeof room[0]); /* for two values of each point, too */
 	group->series = calloc(study->variant_count, sizeof group->series[0]);
 	if (!picked || !room || !group->series)
 		result = GZ_ERR_NO_MEM;
@@ -381,11 +450,15 @@ static enum gz_result fill_group(const struct gz_study *study, const struct gz_s
 		const size_t found = pick(rows, count, v, picked);
 		if (found == 0)
 			continue;
-		if (strcmp(study->variants[v].text, "standard") == 0)
-			group->standard = group->series_count;
 		group->series[group->series_count].variant = v;
 		result = fill_series(&group->series[group->series_count++], picked, found, room);
+		if (result == GZ_OK && strcmp(study->variants[v].text, "standard") == 0) {
+			group->standard = group->series_count - 1;
+			find_noise(study, group, picked, found);
+		}
 	}
+	if (result == GZ_OK)
+		relate(study, group, room);
 	free(picked);
 	free(room);
 	if (result != GZ_OK)
@@ -393,7 +466,6 @@ static enum gz_result fill_group(const struct gz_study *study, const struct gz_s
 	group->reference_db = NAN;
 	for (size_t i = 0; i < count; i++)
 		group->reference_db = fmin(group->reference_db, rows[i].reference_db);
-	relate(study, group);
 	find_fronts(group);
 	return find_curves(study, group);
 }
@@ -616,7 +688,8 @@ enum gz_result gz_summary_make(const struct gz_study *study, struct gz_summary *
 		*group = (struct gz_group) { .scene = row->scene,
 					     .size = row->size,
 					     .backend = row->backend,
-					     .standard = GZ_SERIES_NONE };
+					     .standard = GZ_SERIES_NONE,
+					     .noise = NAN };
 		result = fill_group(study, row, end - i, group);
 	}
 	if (result == GZ_OK)

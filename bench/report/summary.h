@@ -12,6 +12,7 @@
 
 #include "base/result.h"
 #include "bench/report/measures.h"
+#include "bench/report/trust.h"
 #include "bench/study/columns.h"
 #include "bench/study/study.h"
 
@@ -51,6 +52,8 @@ struct gz_series {
 	/** Standard's time over this one's, by medians of points that both have; NaN where standard
 	 *  was not measured. Of the means; the mean of each point's; the least of them. */
 	double ratio_of_means, mean_ratio, least_ratio;
+	/** Of the ratio of the means, from the points that both have. */
+	struct gz_interval ratio_interval;
 	double rays, samples; /**< mean of a frame */
 	/** Rays over the acuity bound's rays at the same points; NaN without a bound. */
 	double bound_share;
@@ -75,6 +78,11 @@ struct gz_group {
 	struct gz_series *series;    /**< variants with rows, in the study's order */
 	size_t series_count;
 	size_t standard; /**< place of standard, or GZ_SERIES_NONE */
+	/** Noise of the machine (gz_noise_of()): standard's times of points with one camera, which
+	 *  ought to be equal, because standard ignores the gaze. If each point has a camera of its
+	 *  own, of the frames of a point. NaN where it is not known. */
+	double noise;
+	bool noise_of_frames;
 	struct gz_curve *curves;
 	size_t curve_count;
 	double bound_share; /**< mean over measured points: of the pixels' rays; NaN without */
@@ -126,6 +134,17 @@ enum gz_result gz_summary_make(const struct gz_study *study, struct gz_summary *
 
 /** Free what it holds and zero it. */
 void gz_summary_free(struct gz_summary *summary);
+
+/**
+ * Of the other series whose error is within @p cost at every point: the nearest in time to
+ * @p series, if their times are apart by less than the group's noise. Which of both is faster is
+ * then not known.
+ *
+ * @return its place, or GZ_SERIES_NONE
+ */
+size_t gz_group_rival(const struct gz_group *group, size_t series,
+		      enum gz_error_reference reference, enum gz_error_measure measure,
+		      double cost);
 
 /** The references that any series of @p group was compared with: converged if it was, else
  *  standard. */

@@ -76,6 +76,9 @@ static json_t *series_to_json(const struct gz_study *study, const struct gz_seri
 	json_object_set_new(object, "points", count(series->point_count));
 	json_object_set_new(object, "typical_ms", number(series->typical_ms));
 	json_object_set_new(object, "ratio_of_means", number(series->ratio_of_means));
+	json_object_set_new(object, "ratio_of_means_95",
+			    json_pack("[o, o]", number(series->ratio_interval.low),
+				      number(series->ratio_interval.high)));
 	json_object_set_new(object, "mean_ratio", number(series->mean_ratio));
 	json_object_set_new(object, "least_ratio", number(series->least_ratio));
 	json_object_set_new(object, "rays", number(series->rays));
@@ -159,6 +162,9 @@ static json_t *group_to_json(const struct gz_study *study, const struct gz_group
 	json_object_set_new(object, "backend", json_string(study->backends[group->backend]));
 	json_object_set_new(object, "bound_rays", number(group->bound_share));
 	json_object_set_new(object, "bound_ms", number(group->bound_ms));
+	json_object_set_new(object, "noise", number(group->noise));
+	json_object_set_new(object, "noise_of",
+			    json_string(group->noise_of_frames ? "frames" : "points"));
 	json_object_set_new(object, "reference_db", number(group->reference_db));
 	json_t *list = json_array();
 	for (size_t i = 0; i < group->series_count; i++)

@@ -114,7 +114,9 @@ static void answer_names_the_cheapest_within_the_bound_and_what_it_saves(void **
 	gz_advice_tell(&study, group, &question, gz_advice_find(group, &question), false, &text);
 	assert_non_null(strstr(text.bytes, "On head at 100×100 on cpu, acuity, slope 0.033 takes "
 					   "10 ms a frame where a ray for every pixel takes 100 "
-					   "ms: 10 times as fast, with 10 % of the rays."));
+					   "ms: 10 times as fast (mean time over mean time; 95 % "
+					   "confidence interval 10 to 10), with 10 % of the "
+					   "rays."));
 	assert_non_null(strstr(text.bytes, "below the bound of 0.03 everywhere"));
 	gz_text_free(&text);
 	free_both(&study, &summary);
@@ -155,6 +157,7 @@ static void answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable
 		if (i != group->standard) {
 			group->series[i].typical_ms = 125;
 			group->series[i].ratio_of_means = 0.8;
+			group->series[i].ratio_interval = (struct gz_interval) { 0.5, 1.25 };
 			group->series[i].rays = 1.1 * 100 * 100;
 		}
 	const size_t winner = gz_advice_find(group, &question);
@@ -163,7 +166,33 @@ static void answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable
 	assert_null(strstr(text.bytes, "only standard"));
 	assert_non_null(strstr(text.bytes, "nothing faster keeps perceived FLIP below 0.03"));
 	assert_non_null(strstr(text.bytes, ", which takes 125 ms a frame"));
-	assert_non_null(strstr(text.bytes, "1.25 times as long, with 110 % of the rays"));
+	assert_non_null(strstr(text.bytes,
+			       "1.25 times as long (mean time over mean time; 95 % "
+			       "confidence interval 0.8 to 2), with 110 % of the rays"));
+	gz_text_free(&text);
+	free_both(&study, &summary);
+}
+
+static void answer_says_the_noise_and_what_it_leaves_open(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_text text = { 0 };
+	make(NULL, 1, &study, &summary);
+	struct gz_group *group = &summary.groups[0];
+	const struct gz_advice_question question = gz_advice_preset(group);
+	const size_t winner = gz_advice_find(group, &question);
+	group->noise = 0.05;
+	gz_advice_tell(&study, group, &question, winner, false, &text);
+	assert_non_null(strstr(text.bytes, "90 of 100 of its times lie within ±5 %."));
+	assert_null(strstr(text.bytes, "Warning"));
+	gz_text_free(&text);
+	group->series[group->standard].typical_ms = 1.04 * group->series[winner].typical_ms;
+	group->noise_of_frames = true;
+	gz_advice_tell(&study, group, &question, winner, true, &text);
+	assert_non_null(strstr(text.bytes, "standard&#39;s frames of one place"));
+	assert_non_null(strstr(text.bytes, "<strong>Warning: standard holds the bound too"));
 	gz_text_free(&text);
 	free_both(&study, &summary);
 }
@@ -466,6 +495,7 @@ TEST_SUITE(report)
 		cmocka_unit_test(without_a_variant_within_the_bound_standard_remains),
 		cmocka_unit_test(
 			answer_about_what_is_slower_and_holds_the_bound_is_true_and_readable),
+		cmocka_unit_test(answer_says_the_noise_and_what_it_leaves_open),
 		cmocka_unit_test(advice_for_several_groups_holds_in_each_of_them),
 		cmocka_unit_test(page_escapes_every_text_and_holds_nothing_from_elsewhere),
 		cmocka_unit_test(page_shows_the_command_that_makes_the_study),

@@ -2,8 +2,12 @@
 # data.tsv, by its blocks: 0 the front, 1 lines, 2 points, 3 rings round points on the front,
 # 4 labels, 5 names of curves, each x, y, colour, alignment, text. A block never is empty; what is nothing lies outside the axes.
 load 'common.gp'
+# A title that is too long for its canvas is written smaller; a character is about 0.54 em wide.
+room = (width - left) / (0.54 * font_px)
+shrink = strlen(title_text) > room ? room / strlen(title_text) : 1
+title_font = sprintf('sans-serif,%.2f', shrink * (canvas eq 'png' ? font_px * 0.75 : font_px))
 set label 1 title_text at screen (1.0 * left / width), screen (1 - 0.5 * top / height) left \
-	textcolor rgb ink
+	textcolor rgb ink font title_font
 set xlabel x_title textcolor rgb mute offset 0, 0.9
 set xtics offset 0, 0.3
 set xrange [x_first:x_last]
