@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
@@ -22,6 +23,46 @@ enum gz_result gz_path_beside(const char *file, const char *name, char *out_path
 	const char *slash = strrchr(file, '/');
 	int folder = slash && name[0] != '/' ? (int)(slash + 1 - file) : 0;
 	return gz_text_print(out_path, size, "%.*s%s", folder, file, name);
+}
+
+/* Length of the part that two absolute paths have in common, up to a "/" or the end of @p folder.
+ */
+static size_t common_length(const char *folder, const char *file)
+{
+	size_t common = 0, i = 0;
+	for (; folder[i] && folder[i] == file[i]; i++)
+		if (folder[i] == '/')
+			common = i;
+	return !folder[i] && file[i] == '/' ? i : common;
+}
+
+/* Both absolute, without links. */
+static enum gz_result path_from_real(const char *folder, const char *file, char *out_path,
+				     size_t size)
+{
+	const size_t root = strcmp(folder, "/") == 0; /* which ends in its "/" */
+	const size_t common = common_length(folder + root, file);
+	struct gz_text path = { 0 };
+	for (const char *at = folder + root + common; *at; at++)
+		if (*at == '/')
+			gz_text_add(&path, "../");
+	gz_text_add(&path, "%s", file + common + 1);
+	const enum gz_result result =
+		path.failed ? GZ_ERR_FULL : gz_text_print(out_path, size, "%s", path.bytes);
+	gz_text_free(&path);
+	return result;
+}
+
+enum gz_result gz_path_from(const char *folder, const char *file, char *out_path, size_t size)
+{
+	char *real_folder = realpath(folder, NULL), *real_file = realpath(file, NULL);
+	enum gz_result result = GZ_ERR_NOT_FOUND;
+	out_path[0] = '\0';
+	if (real_folder && real_file)
+		result = path_from_real(real_folder, real_file, out_path, size);
+	free(real_folder);
+	free(real_file);
+	return result;
 }
 
 size_t gz_write_all(int fd, const void *bytes, size_t size)

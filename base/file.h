@@ -26,6 +26,16 @@ bool gz_path_ends(const char *path, const char *ending);
 enum gz_result gz_path_beside(const char *file, const char *name, char *out_path, size_t size);
 
 /**
+ * The path of a file as seen from a folder: "../scenes/a.scene". Both exist; symbolic links are
+ * followed.
+ *
+ * @param[out] out_path  a buffer of @p size bytes
+ * @retval GZ_ERR_NOT_FOUND  one of them does not exist; @p out_path is an empty string
+ * @retval GZ_ERR_FULL       the path does not fit; @p out_path is an empty string
+ */
+enum gz_result gz_path_from(const char *folder, const char *file, char *out_path, size_t size);
+
+/**
  * Write all bytes to a file descriptor, continuing after signals and partial writes.
  *
  * @return the number of bytes written; less than @p size only after an error, with its cause in

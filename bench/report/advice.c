@@ -13,6 +13,7 @@
 #include "render/plan/plan.h"
 #include "render/raycast/shared/ray_params.h"
 #include "render/scene/scene.h"
+#include "render/scene/scene_files.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -327,35 +328,16 @@ enum gz_result gz_scene_text_set_variant(struct gz_text *text,
 	return GZ_OK;
 }
 
-/* A file that lies beside the scene must lie beside the copy too. */
-static enum gz_result check_file(const char *scene, const char *copy, const char *key,
-				 const char *name, const struct gz_log *log)
-{
-	char before[GZ_PATH_SIZE], after[GZ_PATH_SIZE];
-	if (!name[0] || gz_path_beside(scene, name, before, sizeof before) != GZ_OK ||
-	    gz_path_beside(copy, name, after, sizeof after) != GZ_OK || access(before, F_OK) != 0 ||
-	    access(after, F_OK) == 0)
-		return GZ_OK;
-	gz_err(log, "%s: %s = %s is relative to %s and would not be found: write the copy there",
-	       copy, key, name, scene);
-	return GZ_ERR_NOT_FOUND;
-}
-
-static enum gz_result check_copy(const struct gz_text *text, const char *scene, const char *copy,
-				 const struct gz_log *log)
+/* Names of files must be found from the copy's place too. */
+static enum gz_result move_copy(struct gz_text *text, const char *scene, const char *copy,
+				const struct gz_log *log)
 {
 	struct gz_scene_settings settings;
 	bool has_display;
-	enum gz_result result =
+	const enum gz_result result =
 		gz_scene_parse(copy, text->bytes, text->length, log, &settings, &has_display);
-	if (result == GZ_OK)
-		result = check_file(scene, copy, "volume.file", settings.volume_file, log);
-	if (result == GZ_OK)
-		result = check_file(scene, copy, "transfer.file", settings.transfer_file, log);
-	if (result == GZ_OK)
-		result = check_file(scene, copy, "foveation.table", settings.foveation.table_file,
-				    log);
-	return result;
+	return result == GZ_OK ? gz_scene_text_move_files(text, &settings, scene, copy, log)
+			       : result;
 }
 
 enum gz_result gz_scene_copy_with(const char *scene, const char *copy,
@@ -373,7 +355,7 @@ enum gz_result gz_scene_copy_with(const char *scene, const char *copy,
 	if (result == GZ_OK)
 		result = gz_scene_text_set_variant(&text, variant, log);
 	if (result == GZ_OK && !text.failed)
-		result = check_copy(&text, scene, copy, log);
+		result = move_copy(&text, scene, copy, log);
 	if (result == GZ_OK)
 		result = gz_text_write(&text, copy, log);
 	gz_text_free(&text);

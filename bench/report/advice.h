@@ -68,15 +68,16 @@ enum gz_result gz_scene_text_set_variant(struct gz_text *text,
 					 const struct gz_log *log);
 
 /**
- * Write a copy of a scene with a variant's settings.
+ * Write a copy of a scene with a variant's settings. Names of files that the copy would not find
+ * are changed as by gz_scene_move_files(); all other lines stay byte for byte.
  *
  * @param scene  file to copy
- * @param copy   file to make; it must not exist, and the relative paths in the scene must work from
- *               its folder
+ * @param copy   file to make; it must not exist, its folder must
  * @retval GZ_ERR_BUSY       @p copy exists; logged
- * @retval GZ_ERR_NOT_FOUND  no such scene, or a file of it would not be found; logged
+ * @retval GZ_ERR_NOT_FOUND  no such scene; logged
+ * @retval GZ_ERR_FULL       the path of a file is too long for a scene; logged
  * @retval GZ_ERR_FORMAT     the scene is refused; logged
- * @retval GZ_ERR_INVAL      of gz_scene_text_set_variant()
+ * @retval GZ_ERR_INVAL      of gz_scene_text_set_variant() and gz_scene_move_files()
  * @retval GZ_ERR_IO, GZ_ERR_NO_MEM  logged
  */
 enum gz_result gz_scene_copy_with(const char *scene, const char *copy,

@@ -241,9 +241,8 @@ static enum gz_result draw_boxes_on(const struct gz_summary *summary, const stru
 	const bool names_above = kind == GZ_CANVAS_NARROW;
 	canvas.left = names_above ? 14 : (int)((characters + 2) * canvas.font_px * 0.58);
 	canvas.height = canvas.top + canvas.bottom + (int)rows * row_px(&canvas);
-	gz_chart_set_text(&settings, "title_text", "time of a frame, ms");
-	gz_chart_set_text(&settings, "x_title",
-			  "box: half of all frames; line: 99 of 100; logarithmic");
+	gz_chart_set_text(&settings, "title_text", "time of a frame, ms, logarithmic");
+	gz_chart_set_text(&settings, "x_title", "box: half of all frames; line: 99 of 100");
 	const double first = fmax(least, 1e-4) / 1.15, last = fmax(greatest, 2e-4) * 1.15;
 	gz_text_add(&settings,
 		    "x_first = %.9g\nx_last = %.9g\nx_decades = %.9g\nrows = %zu\n"

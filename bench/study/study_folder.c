@@ -308,7 +308,7 @@ static enum gz_result replace_file(const char *folder, const char *name, const c
 static enum gz_result write_json(const char *folder, const struct gz_study *study,
 				 const struct gz_log *log)
 {
-	char *text = gz_study_to_text(study);
+	char *text = gz_study_to_text(study, folder);
 	if (!text) {
 		gz_err(log, "%s: no memory, or a name that is not UTF-8", folder);
 		return GZ_ERR_NO_MEM;

@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/file.h"
 #include "base/text.h"
 
 #define GZ_LOG_MODULE "study"
@@ -155,9 +157,23 @@ static void shorten_numbers(char *json)
 	*to = '\0';
 }
 
-char *gz_study_to_text(const struct gz_study *study)
+static void add_paths_from(const char *folder, json_t *scenes)
+{
+	char path[GZ_PATH_SIZE];
+	json_t *scene;
+	size_t i;
+	json_array_foreach(scenes, i, scene)
+	{
+		const char *given = json_string_value(json_object_get(scene, "path"));
+		if (given && gz_path_from(folder, given, path, sizeof path) == GZ_OK)
+			json_object_set_new(scene, "from_study", json_string(path));
+	}
+}
+
+char *gz_study_to_text(const struct gz_study *study, const char *folder)
 {
 	json_t *json = gz_study_to_json(study);
+	add_paths_from(folder, json_object_get(json, "scenes"));
 	char *text = json ? json_dumps(json, JSON_INDENT(1)) : NULL;
 	json_decref(json);
 	if (text)
@@ -279,11 +295,24 @@ static void read_camera(struct reader *reader, const json_t *json, struct gz_cam
 		refuse(reader, "projection is neither perspective nor orthographic");
 }
 
+/* Studies of earlier versions do not say where their scenes are as seen from them. */
+static void find_scene(const struct reader *reader, const json_t *json,
+		       struct gz_study_scene *scene)
+{
+	char path[GZ_PATH_SIZE];
+	const char *from_study = json_string_value(json_object_get(json, "from_study"));
+	if (from_study && access(scene->path, F_OK) != 0 &&
+	    gz_path_beside(reader->name, from_study, path, sizeof path) == GZ_OK &&
+	    access(path, F_OK) == 0)
+		memcpy(scene->path, path, sizeof path);
+}
+
 static void read_scene(struct reader *reader, const json_t *json, struct gz_study_scene *scene)
 {
 	const json_t *display = json_object_get(json, "display");
 	read_text(reader, json, "name", scene->name, sizeof scene->name);
 	read_text(reader, json, "path", scene->path, sizeof scene->path);
+	find_scene(reader, json, scene);
 	read_text(reader, json, "transfer", scene->transfer, sizeof scene->transfer);
 	read_text(reader, json, "hash", scene->hash, sizeof scene->hash);
 	read_text(reader, json, "data_hash", scene->data_hash, sizeof scene->data_hash);

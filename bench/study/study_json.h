@@ -18,13 +18,15 @@
 /** A study as JSON, without rows: the caller's, json_decref(). NULL where there is no memory. */
 json_t *gz_study_to_json(const struct gz_study *study);
 
-/** The same as text, each number as short as it can be without changing: the caller's, free(). */
-char *gz_study_to_text(const struct gz_study *study);
+/** The same as text, each number as short as it can be without changing: the caller's, free().
+ *  It also has the paths of scenes as seen from @p folder, where the study is. */
+char *gz_study_to_text(const struct gz_study *study, const char *folder);
 
 /**
- * A study of JSON, without rows. Counts are checked before they are believed.
+ * A study of JSON, without rows. Counts are checked before they are believed. Where a scene's path
+ * leads nowhere from here, but leads to a file as seen from the study's folder, it becomes that.
  *
- * @param name  the file's, for messages
+ * @param name  path of the study's file
  * @param[out] out_study  the caller frees it with gz_study_free()
  * @retval GZ_ERR_FORMAT  another version, or something missing or out of range; logged
  * @retval GZ_ERR_NO_MEM  logged

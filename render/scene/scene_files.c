@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/ini.h"
 #include "base/text.h"
 
 #define GZ_LOG_MODULE "scene"
@@ -97,130 +98,162 @@ static enum gz_result anchor_name(const struct scene_move *move, const char *nam
 	return fits ? GZ_OK : GZ_ERR_FULL;
 }
 
-static enum gz_result move_name(const struct scene_move *move, const char *key, const char *name,
-				char out_name[GZ_PATH_SIZE])
+/* How a key names files. */
+enum file_kind {
+	ONE_FILE,
+	LISTED_FILES, /* separated by blanks */
+	GAZE_LOG,     /* searched beside the scene and in the current folder */
+};
+
+/* A key that names files. */
+struct file_key {
+	const char *section, *key;
+	enum file_kind kind;
+	char *name; /* its value, in the settings */
+	size_t size;
+};
+
+#define FILES_OF_SCENE  7
+#define FILES_OF_OBJECT 5
+#define FILE_KEYS_MAX   (FILES_OF_SCENE + FILES_OF_OBJECT * GZ_SCENE_OBJECTS_MAX)
+
+static size_t list_object_keys(struct gz_scene_object *object,
+			       struct file_key out_keys[static FILES_OF_OBJECT])
+{
+	const struct file_key keys[FILES_OF_OBJECT] = {
+		{ object->section, "volume", ONE_FILE, object->volume, sizeof object->volume },
+		{ object->section, "transfer", ONE_FILE, object->transfer,
+		  sizeof object->transfer },
+		{ object->section, "labels", ONE_FILE, object->labels, sizeof object->labels },
+		{ object->section, "mesh", ONE_FILE, object->mesh, sizeof object->mesh },
+		{ object->section, "particles", ONE_FILE, object->particles,
+		  sizeof object->particles },
+	};
+	memcpy(out_keys, keys, sizeof keys);
+	return FILES_OF_OBJECT;
+}
+
+/* All keys that name files. */
+static size_t list_file_keys(struct gz_scene_settings *settings,
+			     struct file_key out_keys[static FILE_KEYS_MAX])
+{
+	char *cube = settings->rays.environment.cube;
+	const struct file_key keys[FILES_OF_SCENE] = {
+		{ "volume", "file", ONE_FILE, settings->volume_file, GZ_PATH_SIZE },
+		{ "labels", "names", ONE_FILE, settings->labels.names, GZ_PATH_SIZE },
+		{ "transfer", "file", ONE_FILE, settings->transfer_file, GZ_PATH_SIZE },
+		{ "transfer", "also", LISTED_FILES, settings->transfer_also, GZ_PATH_SIZE },
+		{ "foveation", "table", ONE_FILE, settings->foveation.table_file, GZ_PATH_SIZE },
+		{ "environment", "cube", ONE_FILE, cube, GZ_PATH_SIZE },
+		{ "view", "gaze", GAZE_LOG, settings->view.gaze, GZ_PATH_SIZE },
+	};
+	size_t count = FILES_OF_SCENE;
+	memcpy(out_keys, keys, sizeof keys);
+	for (size_t i = 0; i < settings->objects.count; i++)
+		count += list_object_keys(&settings->objects.items[i], out_keys + count);
+	return count;
+}
+
+static enum gz_result refuse_long_path(const struct scene_move *move, const struct file_key *key,
+				       const char *name)
+{
+	gz_err(move->log, "%s.%s: the path of %s is too long for a scene; move the file",
+	       key->section, key->key, name);
+	return GZ_ERR_FULL;
+}
+
+/* One name of a key. */
+static enum gz_result move_name(const struct scene_move *move, const struct file_key *key,
+				const char *name, char out_name[GZ_PATH_SIZE])
 {
 	const enum gz_result result =
 		move->to ? gz_scene_rename_file(move->from, name, move->to, out_name)
 			 : anchor_name(move, name, out_name);
-	if (result != GZ_OK)
-		gz_err(move->log, "%s: the path of %s is too long for a scene; move the file", key,
-		       name);
-	return result;
+	return result == GZ_OK ? GZ_OK : refuse_long_path(move, key, name);
 }
 
-static enum gz_result move_field(const struct scene_move *move, const char *key,
-				 char name[GZ_PATH_SIZE])
+static enum gz_result set_key(const struct scene_move *move, const struct file_key *key,
+			      const char *moved)
+{
+	if (strlen(moved) >= key->size)
+		return refuse_long_path(move, key, key->name);
+	memmove(key->name, moved, strlen(moved) + 1);
+	return GZ_OK;
+}
+
+static enum gz_result move_one_file(const struct scene_move *move, const struct file_key *key)
 {
 	char moved[GZ_PATH_SIZE];
-	const enum gz_result result = move_name(move, key, name, moved);
-	if (result == GZ_OK)
-		memcpy(name, moved, strlen(moved) + 1);
-	return result;
+	const enum gz_result result = move_name(move, key, key->name, moved);
+	return result == GZ_OK ? set_key(move, key, moved) : result;
 }
 
 /* Append one of several names to @p all. */
-static enum gz_result move_listed(const struct scene_move *move, const char *name,
-				  struct gz_text *all)
+static enum gz_result move_listed(const struct scene_move *move, const struct file_key *key,
+				  const char *name, struct gz_text *all)
 {
-	static const char key[] = "transfer.also";
 	char moved[GZ_PATH_SIZE];
 	const enum gz_result result = move_name(move, key, name, moved);
 	if (result != GZ_OK)
 		return result;
 	if (strcmp(moved, name) != 0 && strpbrk(moved, BLANKS)) {
 		gz_err(move->log,
-		       "%s: the path of %s has a blank, which separates names there; save the "
+		       "%s.%s: the path of %s has a blank, which separates names there; save the "
 		       "scene beside it",
-		       key, name);
+		       key->section, key->key, name);
 		return GZ_ERR_INVAL;
 	}
 	gz_text_add(all, "%s%s", all->length ? " " : "", moved);
 	return all->failed ? GZ_ERR_NO_MEM : GZ_OK;
 }
 
-/* Each of several names that are separated by blanks. */
-static enum gz_result move_list(const struct scene_move *move, char names[GZ_PATH_SIZE])
+static enum gz_result move_listed_files(const struct scene_move *move, const struct file_key *key)
 {
 	char copy[GZ_PATH_SIZE];
 	struct gz_text all = { 0 };
 	enum gz_result result = GZ_OK;
-	memcpy(copy, names, sizeof copy);
+	snprintf(copy, sizeof copy, "%s", key->name);
 	char *rest = copy;
 	for (char *name = strsep(&rest, BLANKS); name && result == GZ_OK;
 	     name = strsep(&rest, BLANKS))
 		if (name[0])
-			result = move_listed(move, name, &all);
-	if (result == GZ_OK && all.length >= GZ_PATH_SIZE) {
-		gz_err(move->log,
-		       "transfer.also: the paths are too long for a scene; move the files");
-		result = GZ_ERR_FULL;
-	}
+			result = move_listed(move, key, name, &all);
 	if (result == GZ_ERR_NO_MEM)
-		gz_err(move->log, "transfer.also: no memory for the paths");
+		gz_err(move->log, "%s.%s: no memory for the paths", key->section, key->key);
 	if (result == GZ_OK)
-		memcpy(names, all.bytes ? all.bytes : "", all.length + 1);
+		result = set_key(move, key, all.bytes ? all.bytes : "");
 	gz_text_free(&all);
 	return result;
 }
 
-/* A gaze log, which is searched beside the scene and in the current folder. */
-static enum gz_result move_log(const struct scene_move *move, char gaze[GZ_PATH_SIZE])
+static enum gz_result move_gaze_log(const struct scene_move *move, const struct file_key *key)
 {
 	char path[GZ_PATH_SIZE];
-	if (!gz_path_ends(gaze, ".gzl"))
+	if (!gz_path_ends(key->name, ".gzl"))
 		return GZ_OK;
-	if (gz_scene_find_file(move->from, gaze, path) == GZ_OK)
-		return move_field(move, "view.gaze", gaze);
+	if (gz_scene_find_file(move->from, key->name, path) == GZ_OK)
+		return move_one_file(move, key);
 	const struct scene_move from_here = { .from = "", .to = move->to, .log = move->log };
-	return move_field(&from_here, "view.gaze", gaze);
-}
-
-/* A file of an object, whose buffers are shorter. */
-static enum gz_result move_object_file(const struct scene_move *move, const char *section,
-				       char name[GZ_SCENE_FILE_SIZE])
-{
-	char moved[GZ_PATH_SIZE];
-	snprintf(moved, sizeof moved, "%s", name);
-	enum gz_result result = move_field(move, section, moved);
-	if (result == GZ_OK && strlen(moved) >= GZ_SCENE_FILE_SIZE) {
-		gz_err(move->log, "%s: the path of %s is too long for a scene; move the file",
-		       section, name);
-		result = GZ_ERR_FULL;
-	}
-	if (result == GZ_OK)
-		memcpy(name, moved, strlen(moved) + 1);
-	return result;
-}
-
-static enum gz_result move_object_files(const struct scene_move *move,
-					struct gz_scene_object *object)
-{
-	char *const files[] = { object->volume, object->transfer, object->labels, object->mesh,
-				object->particles };
-	enum gz_result result = GZ_OK;
-	for (size_t i = 0; i < sizeof files / sizeof files[0] && result == GZ_OK; i++)
-		result = move_object_file(move, object->section, files[i]);
-	return result;
+	return move_one_file(&from_here, key);
 }
 
 static enum gz_result move_files(struct gz_scene_settings *settings, const struct scene_move *move)
 {
-	enum gz_result result = move_field(move, "volume.file", settings->volume_file);
-	if (result == GZ_OK)
-		result = move_field(move, "labels.names", settings->labels.names);
-	if (result == GZ_OK)
-		result = move_field(move, "transfer.file", settings->transfer_file);
-	if (result == GZ_OK)
-		result = move_list(move, settings->transfer_also);
-	if (result == GZ_OK)
-		result = move_field(move, "foveation.table", settings->foveation.table_file);
-	if (result == GZ_OK)
-		result = move_field(move, "environment.cube", settings->rays.environment.cube);
-	if (result == GZ_OK)
-		result = move_log(move, settings->view.gaze);
-	for (size_t i = 0; i < settings->objects.count && result == GZ_OK; i++)
-		result = move_object_files(move, &settings->objects.items[i]);
+	struct file_key keys[FILE_KEYS_MAX];
+	const size_t count = list_file_keys(settings, keys);
+	enum gz_result result = GZ_OK;
+	for (size_t i = 0; i < count && result == GZ_OK; i++)
+		switch (keys[i].kind) {
+		case ONE_FILE:
+			result = move_one_file(move, &keys[i]);
+			break;
+		case LISTED_FILES:
+			result = move_listed_files(move, &keys[i]);
+			break;
+		case GAZE_LOG:
+			result = move_gaze_log(move, &keys[i]);
+			break;
+		}
 	return result;
 }
 
@@ -236,4 +269,25 @@ enum gz_result gz_scene_anchor_files(struct gz_scene_settings *settings, const c
 {
 	const struct scene_move move = { .from = from, .log = log };
 	return move_files(settings, &move);
+}
+
+enum gz_result gz_scene_text_move_files(struct gz_text *text,
+					const struct gz_scene_settings *settings, const char *from,
+					const char *to, const struct gz_log *log)
+{
+	struct gz_scene_settings *copies = malloc(2 * sizeof copies[0]);
+	struct file_key before[FILE_KEYS_MAX], after[FILE_KEYS_MAX];
+	if (!copies) {
+		gz_err(log, "%s: no memory for the paths of its files", to);
+		return GZ_ERR_NO_MEM;
+	}
+	copies[0] = copies[1] = *settings;
+	const enum gz_result result = gz_scene_move_files(&copies[1], from, to, log);
+	const size_t count = list_file_keys(&copies[0], before);
+	list_file_keys(&copies[1], after);
+	for (size_t i = 0; i < count && result == GZ_OK; i++)
+		if (strcmp(before[i].name, after[i].name) != 0)
+			gz_ini_text_set(text, after[i].section, after[i].key, after[i].name);
+	free(copies);
+	return result;
 }

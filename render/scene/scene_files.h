@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "base/sizes.h"
+#include "base/text.h"
 #include "render/scene/scene_settings.h"
 
 /**
@@ -49,5 +50,17 @@ enum gz_result gz_scene_move_files(struct gz_scene_settings *settings, const cha
 /** Like gz_scene_move_files(), but with absolute paths, which every scene finds. */
 enum gz_result gz_scene_anchor_files(struct gz_scene_settings *settings, const char *from,
 				     const struct gz_log *log);
+
+/**
+ * Apply gz_scene_rename_file() to every file name in the text of a scene. Lines whose names stay,
+ * and all others, stay byte for byte.
+ *
+ * @param text      of the scene at @p from; its failed is set if memory runs out
+ * @param settings  what it says
+ * @retval GZ_ERR_FULL, GZ_ERR_INVAL, GZ_ERR_NO_MEM  as gz_scene_move_files(); the text is unchanged
+ */
+enum gz_result gz_scene_text_move_files(struct gz_text *text,
+					const struct gz_scene_settings *settings, const char *from,
+					const char *to, const struct gz_log *log);
 
 #endif

@@ -96,12 +96,27 @@ static void copy_over_a_file_is_refused(void **state)
 			 GZ_ERR_BUSY);
 }
 
-static void copy_with_broken_relative_paths_is_refused(void **state)
+static void copy_elsewhere_finds_the_files_of_the_scene(void **state)
 {
 	const struct folder *folder = *state;
-	assert_int_equal(gz_scene_copy_with(folder->scene, folder->far_copy, &acuity, NULL),
-			 GZ_ERR_NOT_FOUND);
-	assert_int_not_equal(access(folder->far_copy, F_OK), 0);
+	struct gz_text text = { 0 };
+	char expected[512];
+	const char *transfer = folder->transfer + strlen("/tmp/"); /* below the copy's folder */
+	write_text(folder->scene,
+		   "; of a study\n[volume]\nprocedural = shells\n\n[transfer]\n"
+		   "file = a.tf   ; beside\n[object b]\ntechnique = isosurface\nmesh = no.ply\n"
+		   "[object c]\n"
+		   "technique = isosurface\nmesh = a.tf\n");
+	assert_int_equal(gz_scene_copy_with(folder->scene, folder->far_copy, &acuity, NULL), GZ_OK);
+	assert_int_equal(gz_text_add_file(&text, folder->far_copy), GZ_OK);
+	snprintf(expected, sizeof expected,
+		 "; of a study\n[volume]\nprocedural = shells\n\n[transfer]\n"
+		 "file = %s   ; beside\n[object b]\ntechnique = isosurface\nmesh = no.ply\n"
+		 "[object c]\n"
+		 "technique = isosurface\nmesh = %s\n[foveation]\nmethod = acuity\n",
+		 transfer, transfer);
+	assert_string_equal(text.bytes, expected);
+	gz_text_free(&text);
 }
 
 static void copy_of_no_scene_or_a_bad_one_is_refused(void **state)
@@ -125,7 +140,7 @@ TEST_SUITE(scene_edit)
 						make_folder, remove_files),
 		cmocka_unit_test_setup_teardown(copy_over_a_file_is_refused, make_folder,
 						remove_files),
-		cmocka_unit_test_setup_teardown(copy_with_broken_relative_paths_is_refused,
+		cmocka_unit_test_setup_teardown(copy_elsewhere_finds_the_files_of_the_scene,
 						make_folder, remove_files),
 		cmocka_unit_test_setup_teardown(copy_of_no_scene_or_a_bad_one_is_refused,
 						make_folder, remove_files),

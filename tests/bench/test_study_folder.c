@@ -188,6 +188,33 @@ static void study_without_min_move_and_per_cell_is_read(void **state)
 	gz_study_free(&study);
 }
 
+/* Root and scene move together, and the path as given leads nowhere then. */
+static void scene_of_a_study_is_found_from_any_folder(void **state)
+{
+	(void)state;
+	char scene[96], moved[96];
+	struct gz_study study = study_example(0, 1), read;
+	snprintf(scene, sizeof scene, "%s/a.scene", root);
+	snprintf(moved, sizeof moved, "%s/b.scene", root);
+	fclose(fopen(scene, "w"));
+	snprintf(study.scenes[0].path, sizeof study.scenes[0].path, "%s", scene);
+	assert_int_equal(gz_study_write(folder, &study, &log_of_test), GZ_OK);
+	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
+	assert_string_equal(read.scenes[0].path, scene);
+	gz_study_free(&read);
+	replace("study.json", "../a.scene", "../b.scene");
+	assert_int_equal(rename(scene, moved), 0);
+	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
+	assert_int_equal(access(read.scenes[0].path, F_OK), 0);
+	assert_string_equal(strrchr(read.scenes[0].path, '/'), "/b.scene");
+	gz_study_free(&read);
+	unlink(moved);
+	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
+	assert_string_equal(read.scenes[0].path, scene);
+	gz_study_free(&read);
+	gz_study_free(&study);
+}
+
 static void shard_written_is_read(void **state)
 {
 	(void)state;
@@ -500,6 +527,7 @@ TEST_SUITE(study_folder)
 		cmocka_unit_test_setup(study_written_is_read, name_folder),
 		cmocka_unit_test_setup(numbers_are_written_as_short_as_they_can_be, name_folder),
 		cmocka_unit_test_setup(study_without_min_move_and_per_cell_is_read, name_folder),
+		cmocka_unit_test_setup(scene_of_a_study_is_found_from_any_folder, name_folder),
 		cmocka_unit_test_setup(shard_written_is_read, name_folder),
 		cmocka_unit_test_setup(interrupted_study_is_read_up_to_its_last_whole_unit,
 				       name_folder),
