@@ -15,7 +15,7 @@
 
 #define GZ_LOG_MODULE "gazebench"
 
-enum { LIST_SIZE = 1024, CHURN_FRAMES = 10000, VARIANTS_MAX = 64, TEXT_SIZE = 256 };
+enum { LIST_SIZE = 1024, CHURN_FRAMES = 10000, VARIANTS_MAX = 64, ROWS_MAX = 32, TEXT_SIZE = 256 };
 
 struct settings {
 	struct gz_command_common common;
@@ -86,6 +86,8 @@ struct session {
 	const char *backend; /* in use */
 	int held, failed, refused, apart;
 	bool printed; /* a row */
+	/* What became of the rows of the backend in use: "" where they did not run. */
+	const char *verdicts[ROWS_MAX][VARIANTS_MAX];
 };
 
 /* Whether a list "a,b" names something; an empty one names everything. */
@@ -182,14 +184,14 @@ static void print_row_text(const char *method, const struct gz_stability_outcome
 		       outcome->numbers[i].what, outcome->numbers[i].bound);
 	printf("%s%s\n", outcome->number_count ? "" : " ",
 	       outcome->number_count ? "" : outcome->note);
+	if (outcome->note[0] && outcome->number_count)
+		printf("    %s\n", outcome->note);
 	if (outcome->verdict != GZ_STABILITY_FAILS)
 		return;
 	for (int i = 0; i < outcome->number_count; i++)
 		if (!(outcome->numbers[i].value <= outcome->numbers[i].bound))
 			printf("    %.4g: %s\n", outcome->numbers[i].value,
 			       outcome->numbers[i].where);
-	if (outcome->note[0] && outcome->number_count)
-		printf("    %s\n", outcome->note);
 	if (worst->known)
 		printf("    worst at %d, %d: got %d %d %d, wanted %d %d %d\n", worst->x, worst->y,
 		       worst->got[0], worst->got[1], worst->got[2], worst->wanted[0],
@@ -267,9 +269,45 @@ static void count_rows(struct session *session, enum gz_stability_verdict verdic
 	session->apart += verdict == GZ_STABILITY_APART;
 }
 
-static enum gz_result run_row(struct session *session, const struct gz_stability_row *row,
-			      const char *method)
+/* Keep the verdict for the table; a row that runs once a backend is about all methods. */
+static void keep_verdict(struct session *session, const struct gz_stability_row *row, int variant,
+			 enum gz_stability_verdict verdict)
 {
+	static const char *const words[] = {
+		[GZ_STABILITY_HOLDS] = "holds",
+		[GZ_STABILITY_FAILS] = "FAILS",
+		[GZ_STABILITY_REFUSED] = "refused",
+		[GZ_STABILITY_APART] = "-",
+	};
+	const int last = row->every_method ? session->variant_count - 1 : variant;
+	for (int i = variant; i <= last; i++)
+		session->verdicts[row - gz_stability_rows][i] = words[verdict];
+}
+
+/* What held with the backend in use: a line for each row, a column for each method. */
+static void print_verdicts(const struct session *session)
+{
+	printf("\n%-12s", session->backend);
+	for (int i = 0; i < session->variant_count; i++)
+		printf("  %-*s", i < session->variant_count - 1 ? 7 : 0, session->variants[i].text);
+	for (const struct gz_stability_row *row = gz_stability_rows; row->name; row++) {
+		if (!session->verdicts[row - gz_stability_rows][0])
+			continue;
+		printf("\n  %-10s", row->name);
+		for (int i = 0; i < session->variant_count; i++) {
+			const char *verdict = session->verdicts[row - gz_stability_rows][i];
+			const int width = (int)fmax(7, (double)strlen(session->variants[i].text));
+			const bool last = i == session->variant_count - 1;
+			printf("  %-*s", last ? 0 : width, verdict ? verdict : "");
+		}
+	}
+	printf("\n\n");
+}
+
+static enum gz_result run_row(struct session *session, const struct gz_stability_row *row,
+			      int variant)
+{
+	const char *method = row->every_method ? "all" : session->variants[variant].text;
 	struct gz_stability_outcome outcome = { 0 };
 	char picture[GZ_PATH_SIZE];
 	enum gz_result result = gz_stability_run(session->bench, row, &outcome);
@@ -285,6 +323,7 @@ static enum gz_result run_row(struct session *session, const struct gz_stability
 		session->printed = true;
 		fflush(stdout);
 		count_rows(session, outcome.verdict);
+		keep_verdict(session, row, variant, outcome.verdict);
 	}
 	gz_stability_outcome_free(&outcome);
 	return result;
@@ -301,7 +340,7 @@ static enum gz_result run_variants(struct session *session, const struct gz_stab
 			return GZ_ERR_CANCELLED;
 		gz_stability_use_method(session->bench, &variant->settings.foveation,
 					&variant->settings.rays, variant->every_step_rule);
-		result = run_row(session, row, row->every_method ? "all" : variant->text);
+		result = run_row(session, row, i);
 		if (row->every_method)
 			break;
 	}
@@ -315,11 +354,14 @@ static enum gz_result run_backend(struct session *session)
 	const bool named = strncmp(described, session->backend, strlen(session->backend)) == 0;
 	if (!session->settings.json)
 		printf("%s%s%s\n", named ? "" : session->backend, named ? "" : ": ", described);
+	memset(session->verdicts, 0, sizeof session->verdicts);
 	enum gz_result result = GZ_OK;
 	for (const struct gz_stability_row *row = gz_stability_rows; row->name && result == GZ_OK;
 	     row++)
 		if (lists(session->settings.rows, row->name))
 			result = run_variants(session, row);
+	if (!session->settings.json)
+		print_verdicts(session);
 	return result;
 }
 
@@ -459,12 +501,16 @@ const struct gz_command gazebench_stability = {
 	.operands = "SCENE",
 	.operands_max = 1,
 	.summary = "check, on a scene, where foveated methods fail",
-	.details = "Prints a line for each row, method and backend: whether it holds, the measured "
-		   "value and its\n"
-		   "bound. Below a failure: what was rendered, the worst pixel, and the path of a "
-		   "picture\n"
-		   "(got, wanted, difference). Rows about odd volumes use volumes of their own.\n"
-		   "docs/gazebench.md explains the rows. Exits with 4 if a row fails.\n",
+	.details =
+		"Prints a line for each row, method and backend: whether it holds, the measured "
+		"value and its\n"
+		"bound. Below a failure: what was rendered, the worst pixel, and the path of a "
+		"picture\n"
+		"(got, wanted, difference). A table of what held follows at the end of each "
+		"backend.\n"
+		"Rows about odd volumes use volumes of their own. docs/gazebench.md explains the "
+		"rows.\n"
+		"Exits with 4 if a row fails.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_stability,

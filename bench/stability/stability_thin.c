@@ -170,9 +170,12 @@ enum gz_result gz_stability_thin(struct gz_stability_bench *bench,
 		result = look_by_rules(bench, &search, what, outcome);
 		const size_t used = strlen(outcome->note);
 		snprintf(outcome->note + used, sizeof outcome->note - used,
-			 "%.1f %% lost with steps of %g voxels; ", search.most_elsewhere,
+			 "%s%.1f %% with steps of %g",
+			 used ? ", " : "lost outside the fovea: ", search.most_elsewhere,
 			 thin_steps[i]);
 	}
+	const size_t used = strlen(outcome->note);
+	snprintf(outcome->note + used, sizeof outcome->note - used, " voxels at the gaze; ");
 	finish_look(&search, outcome);
 	return result;
 }

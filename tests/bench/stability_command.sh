@@ -36,13 +36,16 @@ printf 'unit px\n0 4 1\n' >coarse.table
 small="small.scene --backend cpu --size 160x120"
 
 expect 0 $small --methods standard,acuity --rows brightness,saccade,tremble
-[ "$(grep -c ' holds ' said)" -eq 6 ] || fail "six rows should hold"
+[ "$(grep -c ' holds .*(at most' said)" -eq 6 ] || fail "six rows should hold"
 grep -q '^6 held, 0 failed' said || fail "no sum"
+grep -Eq '^cpu +standard  acuity$' said && grep -Eq '^  tremble +holds +holds$' said ||
+	fail "no table of what held"
 [ ! -e small-stability ] || fail "a folder of pictures without failures"
 
 expect 4 $small --methods table --rows saccade
 grep -q ' fails ' said && grep -q 'worst at [0-9]' said || fail "no failure, or no worst pixel"
 [ -s small-stability/cpu-saccade-table.png ] || fail "no picture beside the failure"
+grep -Eq '^  saccade +FAILS$' said || fail "the table does not show the failure"
 expect 4 $small --methods table --rows saccade --out elsewhere --json
 [ -s elsewhere/cpu-saccade-table.png ] || fail "no picture in --out"
 /usr/bin/python3 - <<-'END' || fail "not the JSON that was promised"
