@@ -372,8 +372,53 @@ static void add_errors(const struct gz_summary *summary, const struct gz_group *
 	json_decref(others);
 }
 
+/* The bytes of a file in base64; NULL if it cannot be read. */
+static json_t *embedded_file(const char *path)
+{
+	struct gz_text bytes = { 0 }, text = { 0 };
+	json_t *json = NULL;
+	if (gz_text_add_file(&bytes, path) == GZ_OK) {
+		gz_text_add_base64(&text, bytes.bytes, bytes.length);
+		json = text.failed ? NULL : json_string(text.bytes);
+	}
+	gz_text_free(&bytes);
+	gz_text_free(&text);
+	return json;
+}
+
+static json_t *make_crop_figure(const struct gz_summary *summary, const struct gz_crop *crop)
+{
+	char words[GZ_NAMES_SIZE], caption[2 * GZ_NAMES_SIZE];
+	const struct gz_group *group = &summary->groups[crop->group];
+	enum gz_error_measure measure = GZ_PERCEIVED_FLIP;
+	gz_group_measure(group, &measure);
+	gz_variant_words(&summary->study->variants[group->series[crop->series].variant], words);
+	snprintf(caption, sizeof caption,
+		 "%s, %s gaze (%.2f, %.2f): %s against standard %.3g. The crop is %.1f° "
+		 "from the gaze.",
+		 words, crop->worst ? "worst" : "median", (double)crop->gaze.x,
+		 (double)crop->gaze.y, gz_error_metrics[measure].title, crop->error,
+		 crop->away_deg);
+	json_t *figure = json_object();
+	gz_page_set_text(figure, "caption", caption);
+	json_object_set_new(figure, "png", embedded_file(crop->path));
+	return figure;
+}
+
+static void add_crop_figures(const struct gz_summary *summary, size_t group,
+			     const struct gz_crops *crops, json_t *out)
+{
+	json_t *figures = json_array();
+	for (size_t i = 0; crops && i < crops->count; i++)
+		if (crops->items[i].group == group)
+			json_array_append_new(figures, make_crop_figure(summary, &crops->items[i]));
+	if (json_array_size(figures) > 0)
+		json_object_set_new(out, "crops", json_pack("{s:O}", "list", figures));
+	json_decref(figures);
+}
+
 static void add_group(const struct gz_summary *summary, size_t place,
-		      const struct gz_charts *charts, json_t *out)
+		      const struct gz_charts *charts, const struct gz_crops *crops, json_t *out)
 {
 	const struct gz_group *group = &summary->groups[place];
 	json_t *variants = json_object_get(out, "variants"), *series = json_array();
@@ -396,6 +441,7 @@ static void add_group(const struct gz_summary *summary, size_t place,
 		add_errors(summary, group, charts, measure, out);
 	if (charts->available)
 		json_object_set_new(out, "maps", make_maps(summary, group, charts));
+	add_crop_figures(summary, place, crops, out);
 }
 
 /* ---- the machine and the command ---- */
@@ -558,7 +604,7 @@ static void add_time_titles(json_t *page)
 }
 
 void gz_page_write(const struct gz_summary *summary, const struct gz_charts *charts,
-		   struct gz_text *out)
+		   const struct gz_crops *crops, struct gz_text *out)
 {
 	json_t *page = gz_summary_to_json(summary), *groups = json_object_get(page, "groups");
 	struct gz_text command = { 0 };
@@ -566,7 +612,7 @@ void gz_page_write(const struct gz_summary *summary, const struct gz_charts *cha
 	add_banners(summary->study, charts, page);
 	add_time_titles(page);
 	for (size_t i = 0; i < summary->group_count; i++)
-		add_group(summary, i, charts, json_array_get(groups, i));
+		add_group(summary, i, charts, crops, json_array_get(groups, i));
 	json_object_set(page, "header", json_array_get(groups, 0));
 	json_object_set(page, "title", member(page, "header", "title"));
 	json_object_set_new(page, "contents", json_boolean(summary->group_count > 1));
@@ -597,11 +643,12 @@ static enum gz_result write_summary(const struct gz_summary *summary, const char
 }
 
 static enum gz_result write_page(const struct gz_summary *summary, const struct gz_charts *charts,
-				 const char *folder, const struct gz_log *log)
+				 const struct gz_crops *crops, const char *folder,
+				 const struct gz_log *log)
 {
 	char path[GZ_PATH_SIZE + 32];
 	struct gz_text page = { 0 };
-	gz_page_write(summary, charts, &page);
+	gz_page_write(summary, charts, crops, &page);
 	snprintf(path, sizeof path, "%s/report.html", folder);
 	const enum gz_result result = gz_text_write(&page, path, log);
 	gz_text_free(&page);
@@ -612,13 +659,17 @@ enum gz_result gz_report_write(const struct gz_summary *summary, const char *fol
 			       const struct gz_log *log)
 {
 	struct gz_charts charts = { 0 };
+	struct gz_crops crops = { 0 };
 	enum gz_result result = write_summary(summary, folder, log);
 	if (result == GZ_OK)
 		result = gz_charts_open(folder, log, &charts);
 	if (result == GZ_OK)
 		result = gz_study_charts_draw(summary, &charts);
 	if (result == GZ_OK)
-		result = write_page(summary, &charts, folder, log);
+		result = gz_crops_make(summary, folder, log, &crops);
+	if (result == GZ_OK)
+		result = write_page(summary, &charts, &crops, folder, log);
+	gz_crops_free(&crops);
 	gz_charts_close(&charts);
 	return result;
 }

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "bench/report/charts.h"
+#include "bench/report/crops.h"
 #include "bench/report/summary.h"
 
 /**
@@ -20,9 +21,9 @@
 enum gz_result gz_report_write(const struct gz_summary *summary, const char *folder,
 			       const struct gz_log *log);
 
-/** Append the whole page to @p out, with those charts that were drawn. Sets failed where memory
- *  runs out. */
+/** Append the whole page to @p out, with those charts that were drawn and those crops that were
+ *  made; NULL for none. Sets failed where memory runs out. */
 void gz_page_write(const struct gz_summary *summary, const struct gz_charts *charts,
-		   struct gz_text *out);
+		   const struct gz_crops *crops, struct gz_text *out);
 
 #endif

@@ -10,6 +10,7 @@ import pty
 import re
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -163,6 +164,25 @@ class Run(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(len(self.rows("s")), 600)
         self.assertEqual(self.rows("s")[: len(part)], part)
+
+    def test_report_shows_the_error_where_it_is(self):
+        done = self.gazebench(
+            self.command(
+                "run", "a.scene", "--size", "160x120", "--methods", "uniform:uniform_spacing=8",
+                "--frames", "1", "--path", "grid:2x1", "--errors", "standard", "--out", "s"
+            )
+        )
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.gazebench(self.command("report", "s"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for which in ("worst", "median"):
+            with open(os.path.join(self.place.name, "s", "crop-%s-2.png" % which), "rb") as file:
+                header = file.read(24)
+            self.assertEqual(struct.unpack(">II", header[16:]), (3 * 64 + 2 * 2, 64))
+        with open(os.path.join(self.place.name, "s", "report.html")) as file:
+            page = file.read()
+        self.assertEqual(len(re.findall("data:image/png;base64,[A-Za-z0-9+/=]{900}", page)), 2)
+        self.assertRegex(page, "worst gaze .*: perceived FLIP against standard 0\\.")
 
     def test_shards_merge_to_the_rows_of_one_run(self):
         path = ("--path", "sweep:s:5")

@@ -228,7 +228,7 @@ static void page_escapes_every_text_and_holds_nothing_from_elsewhere(void **stat
 	snprintf(study.machine.host_cpu, sizeof study.machine.host_cpu, "<img src=x onerror=y>");
 	snprintf(study.machine.program, sizeof study.machine.program, "\"><b>");
 	snprintf(study.path, sizeof study.path, "it's; rm -rf \"$HOME\" <b>");
-	gz_page_write(&summary, &none, &page);
+	gz_page_write(&summary, &none, NULL, &page);
 	assert_false(page.failed);
 	assert_null(strstr(page.bytes, "<script"));
 	assert_null(strstr(page.bytes, "<img"));
@@ -254,7 +254,7 @@ static void page_shows_the_command_that_makes_the_study(void **state)
 	const struct gz_charts none = { 0 };
 	make(NULL, 1, &study, &summary);
 	study.camera_count = 7;
-	gz_page_write(&summary, &none, &page);
+	gz_page_write(&summary, &none, NULL, &page);
 	assert_non_null(strstr(page.bytes, " --cameras 7 \\\n  --frames 1 "));
 	assert_null(strstr(page.bytes, "--min-move"));
 	assert_null(strstr(page.bytes, "--per-cell"));
@@ -265,7 +265,7 @@ static void page_shows_the_command_that_makes_the_study(void **state)
 	study.scenes[0].display.mm[1] = 318;
 	study.min_move_px = 10.5;
 	study.per_cell = true;
-	gz_page_write(&summary, &none, &page);
+	gz_page_write(&summary, &none, NULL, &page);
 	assert_non_null(strstr(page.bytes, " --cameras 7 --min-move 10.5 --per-cell \\\n"));
 	assert_non_null(strstr(page.bytes, "--display-mm &#39;565.8 318&#39; --distance-mm 600 "));
 	gz_text_free(&page);
@@ -358,7 +358,7 @@ static void page_of_a_partial_study_or_one_shard_says_so(void **state)
 	study.complete = false;
 	study.shard = 2;
 	study.shard_count = 4;
-	gz_page_write(&summary, &none, &page);
+	gz_page_write(&summary, &none, NULL, &page);
 	assert_non_null(strstr(page.bytes, "Partial study."));
 	assert_non_null(strstr(page.bytes, "One part of 4."));
 	assert_non_null(strstr(page.bytes, "holds shard 3;"));
@@ -375,14 +375,14 @@ static void page_without_errors_has_no_empty_tables_of_them(void **state)
 	struct gz_text page = { 0 };
 	const struct gz_charts none = { 0 };
 	make(NULL, 1, &study, &summary);
-	gz_page_write(&summary, &none, &page);
+	gz_page_write(&summary, &none, NULL, &page);
 	assert_non_null(strstr(page.bytes, "All measures of error"));
 	gz_text_free(&page);
 	gz_summary_free(&summary);
 	for (size_t i = 0; i < study.row_count; i++)
 		study.rows[i].converged.perceived_flip = NAN;
 	assert_int_equal(gz_summary_make(&study, &summary), GZ_OK);
-	gz_page_write(&summary, &none, &page);
+	gz_page_write(&summary, &none, NULL, &page);
 	assert_null(strstr(page.bytes, "All measures of error"));
 	assert_null(strstr(page.bytes, "At equal error"));
 	assert_non_null(strstr(page.bytes, "what it costs is not known"));
