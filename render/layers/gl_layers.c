@@ -16,7 +16,7 @@ enum { JOIN_EDGE = 8 };
  * GZ_PLAN_LAYERS_MAX. Literal numbers, since they are pasted into the shader's text, as is
  * GZ_GL_STORAGE_POINTS. */
 #define JOIN_PICTURE        0
-#define JOIN_OWN            1
+#define JOIN_BACKGROUND     1
 #define JOIN_LATTICES       2
 #define JOIN_POINTS         8
 #define JOIN_SOLIDS         14
@@ -27,32 +27,30 @@ enum { JOIN_EDGE = 8 };
 
 static const char join_numbers[] =
 	DEFINE("UNIT_LAYERS", GZ_GL_UNIT_LAYERS) DEFINE("STORAGE_POINTS", JOIN_STORAGE_POINTS)
-		DEFINE("OWN", JOIN_OWN) DEFINE("LATTICES", JOIN_LATTICES)
+		DEFINE("BACKGROUND", JOIN_BACKGROUND) DEFINE("LATTICES", JOIN_LATTICES)
 			DEFINE("POINTS", JOIN_POINTS) DEFINE("SOLIDS", JOIN_SOLIDS);
 
 _Static_assert(JOIN_STORAGE_POINTS == GZ_GL_STORAGE_POINTS, "the picture is bound there");
-_Static_assert(JOIN_OWN == GZ_GL_LAYERS_OWN, "programs of others have it there, too");
 _Static_assert(JOIN_POINTS == JOIN_LATTICES + GZ_PLAN_LAYERS_MAX &&
 		       JOIN_SOLIDS == JOIN_POINTS + GZ_PLAN_LAYERS_MAX,
 	       "arrays lie one behind the other");
 
-struct gz_gl_shader gz_gl_layers_shader(const char *name, const char *text)
+struct gz_gl_shader gz_gl_join_shader(void)
 {
 	return (struct gz_gl_shader) {
 		.stage = GZ_GL_COMPUTE,
-		.name = name,
-		.parts = { gz_gl_plan_parts[0], join_numbers, gz_glsl_layers_glsl, text },
+		.name = "join.comp",
+		.parts = { gz_gl_plan_parts[0], join_numbers, gz_glsl_layers_glsl,
+			   gz_glsl_join_comp },
 	};
-}
-
-struct gz_gl_shader gz_gl_join_shader(void)
-{
-	return gz_gl_layers_shader("join.comp", gz_glsl_join_comp);
 }
 
 struct gz_gl_shader gz_gl_pick_shader(void)
 {
-	return gz_gl_layers_shader("pick.comp", gz_glsl_pick_comp);
+	struct gz_gl_shader shader = gz_gl_join_shader();
+	shader.name = "pick.comp";
+	shader.parts[3] = gz_glsl_pick_comp;
+	return shader;
 }
 
 enum gz_result gz_gl_layers_prepare(struct gz_gl_layers *layers, const struct gz_gl_device *device,
@@ -113,9 +111,9 @@ static void set_layer_uniforms(const struct gz_gl_layers *layers)
 	}
 }
 
-void gz_gl_layers_run(const struct gz_gl_layers *layers,
-		      const unsigned textures[GZ_PLAN_RECTANGLES_MAX],
-		      const struct gz_gl_points *points)
+/* Run the program in use over the pixels. */
+static void run_over_pixels(const struct gz_gl_layers *layers,
+			    const unsigned textures[GZ_PLAN_RECTANGLES_MAX])
 {
 	for (int i = 0; i < layers->count; i++) {
 		glActiveTexture((GLenum)(GL_TEXTURE0 + GZ_GL_UNIT_LAYERS + i));
@@ -123,7 +121,7 @@ void gz_gl_layers_run(const struct gz_gl_layers *layers,
 	}
 	glActiveTexture(GL_TEXTURE0);
 	set_layer_uniforms(layers);
-	gz_gl_points_bind(points);
+	gz_gl_points_bind(&layers->picture);
 	glDispatchCompute((GLuint)((layers->width + JOIN_EDGE - 1) / JOIN_EDGE),
 			  (GLuint)((layers->height + JOIN_EDGE - 1) / JOIN_EDGE), 1);
 	glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
@@ -134,8 +132,9 @@ void gz_gl_layers_join(const struct gz_gl_layers *layers,
 		       const unsigned textures[GZ_PLAN_RECTANGLES_MAX], const double background[3])
 {
 	glUseProgram(layers->join);
-	glUniform3f(JOIN_OWN, (float)background[0], (float)background[1], (float)background[2]);
-	gz_gl_layers_run(layers, textures, &layers->picture);
+	glUniform3f(JOIN_BACKGROUND, (float)background[0], (float)background[1],
+		    (float)background[2]);
+	run_over_pixels(layers, textures);
 }
 
 enum gz_result gz_gl_layers_pick(struct gz_gl_layers *layers, const struct gz_gl_device *device,
@@ -143,7 +142,7 @@ enum gz_result gz_gl_layers_pick(struct gz_gl_layers *layers, const struct gz_gl
 				 uint32_t *out_words)
 {
 	glUseProgram(layers->pick);
-	gz_gl_layers_run(layers, textures, &layers->picture);
+	run_over_pixels(layers, textures);
 	return gz_gl_points_read(&layers->picture, device,
 				 (size_t)layers->width * (size_t)layers->height, out_words);
 }

@@ -66,28 +66,6 @@ enum gz_result gz_gl_layers_pick(struct gz_gl_layers *layers, const struct gz_gl
 				 const unsigned textures[GZ_PLAN_RECTANGLES_MAX],
 				 uint32_t *out_words);
 
-/** Location of the uniform of a program's own, up to four words. A literal number, since it is
- *  pasted into shaders' text. */
-#define GZ_GL_LAYERS_OWN 1
-
-/**
- * A program that a technique runs over the pixels: what shaders/layers.glsl knows of the layers,
- * then the technique's text, which writes words of `pixels` and reads textures from UNIT_LAYERS on.
- *
- * @param name  for messages  @param text  borrowed
- */
-struct gz_gl_shader gz_gl_layers_shader(const char *name, const char *text);
-
-/**
- * Run the program in use over the pixels, then use none.
- *
- * @param textures  of each layer, as the program reads them
- * @param points    that it writes
- */
-void gz_gl_layers_run(const struct gz_gl_layers *layers,
-		      const unsigned textures[GZ_PLAN_RECTANGLES_MAX],
-		      const struct gz_gl_points *points);
-
 /**
  * Copy the picture to where it is wanted, and check for errors of the frame.
  *

@@ -63,6 +63,20 @@ int gz_raster_layers_make(const struct gz_plan *plan,
 	return count;
 }
 
+/* How far a number lies outside of [from, to). */
+static int outside(int number, int from, int to)
+{
+	return greater(greater(from - number, number - to + 1), 0);
+}
+
+float gz_raster_layer_share(const struct gz_raster_layer *layer, int x, int y)
+{
+	const int away = greater(outside(x, layer->solid[0][0], layer->solid[1][0]),
+				 outside(y, layer->solid[0][1], layer->solid[1][1]));
+	const float along = (float)lesser(away, layer->band + 1) / (float)(layer->band + 1);
+	return 1 - along * along * (3 - 2 * along);
+}
+
 uint64_t gz_raster_layer_drawn(const struct gz_raster_layer *layer)
 {
 	uint64_t hidden = 1;

@@ -35,6 +35,10 @@ struct gz_raster_layer {
 int gz_raster_layers_make(const struct gz_plan *plan,
 			  struct gz_raster_layer out_layers[GZ_PLAN_RECTANGLES_MAX]);
 
+/** How much of pixel (@p x, @p y) a layer that is not the first shows: 1 in its solid rectangle, 0
+ *  beyond the band around it, as share_of() of shaders/layers.glsl has it. */
+float gz_raster_layer_share(const struct gz_raster_layer *layer, int x, int y);
+
 /** Points of a lattice that are drawn. */
 uint64_t gz_raster_layer_drawn(const struct gz_raster_layer *layer);
 

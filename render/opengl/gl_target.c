@@ -108,14 +108,17 @@ void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4]
 	glClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 
-void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,
-		       uint32_t *out_words)
+void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane, int width,
+		       int height, void *out_words)
 {
-	glBindTexture(GL_TEXTURE_2D, target->planes[plane]);
+	GLint before = 0;
+	glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &before);
+	glBindFramebuffer(GL_READ_FRAMEBUFFER, target->framebuffer);
+	glReadBuffer(GL_COLOR_ATTACHMENT0 + (GLenum)plane);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
-	glGetTexImage(GL_TEXTURE_2D, 0, plane_formats[plane].format, plane_formats[plane].type,
-		      out_words);
-	glBindTexture(GL_TEXTURE_2D, 0);
+	glReadPixels(0, 0, width, height, plane_formats[plane].format, plane_formats[plane].type,
+		     out_words);
+	glBindFramebuffer(GL_READ_FRAMEBUFFER, (GLuint)before);
 }
 
 void gz_gl_target_free(struct gz_gl_target *target)

@@ -48,10 +48,10 @@ void gz_gl_target_begin(const struct gz_gl_target *target);
  * vectors to 0, depth to the farthest. Call it after begin. */
 void gz_gl_target_clear(const struct gz_gl_target *target, const float colour[4]);
 
-/** Read a plane back: target->width x target->height words of 32 bits, or vectors of four, row 0 is
- * the bottom one. */
-void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane,
-		       uint32_t *out_words);
+/** Read the first @p width x @p height pixels of a plane: words of 32 bits, or vectors of four; row
+ *  0 is the bottom one. Waits until they are drawn. */
+void gz_gl_target_read(const struct gz_gl_target *target, enum gz_gl_target_plane plane, int width,
+		       int height, void *out_words);
 
 /** Delete and zero. Accepts a zeroed one. */
 void gz_gl_target_free(struct gz_gl_target *target);

@@ -12,6 +12,7 @@
 #include "mesh_fields.h"
 #include "mesh_shapes.h"
 #include "render/illustration/cpu/illustrate_caster.h"
+#include "render/illustration/gl/illustrate_points.h"
 #include "render/illustration/gl/illustrate_programs.h"
 #include "render/illustration/gl/illustrate_raster.h"
 #include "render/illustration/technique/illustrate_technique.h"
@@ -445,6 +446,91 @@ static void foveated_picture_is_that_of_rays_at_the_gaze(void **state)
 	take_down_easel(&easel);
 }
 
+/* A plane in space, which filters and fading keep as it is. */
+static float level_at(double x, double y)
+{
+	return (float)(0.1 + 0.004 * x + 0.003 * y);
+}
+
+/* Points of a plane in space; those that are not drawn have another object's. */
+static void fill_points(struct gz_illustrate_lattice *lattice)
+{
+	const struct gz_raster_layer *layer = &lattice->layer;
+	for (int row = 0; row < layer->points[1]; row++)
+		for (int column = 0; column < layer->points[0]; column++) {
+			const bool hidden = column >= layer->hidden[0][0] &&
+					    column < layer->hidden[1][0] &&
+					    row >= layer->hidden[0][1] && row < layer->hidden[1][1];
+			const float level = level_at(layer->from[0] + column * layer->spacing,
+						     layer->from[1] + row * layer->spacing);
+			float *vector = lattice->vectors[row * layer->points[0] + column];
+			vector[GZ_ILLUSTRATE_VECTOR_TONE] = hidden ? 9 : level;
+			vector[GZ_ILLUSTRATE_VECTOR_DEPTH] = hidden ? 9 : 2 * level;
+			vector[GZ_ILLUSTRATE_VECTOR_OBJECT] = hidden ? 9 : -5;
+			vector[GZ_ILLUSTRATE_VECTOR_DISTANCE] = hidden ? 9 : 3 * level;
+		}
+}
+
+/* 1 in the solid rectangle, 0 beyond the band, and falling between. */
+static void check_shares(const struct gz_raster_layer *layer)
+{
+	const int x = layer->solid[0][0], y = layer->solid[0][1];
+	assert_true(gz_raster_layer_share(layer, x, y) == 1);
+	assert_true(gz_raster_layer_share(layer, x, y - layer->band - 1) == 0);
+	for (int i = 0; i <= layer->band; i++)
+		assert_true(gz_raster_layer_share(layer, x - i, y) >
+			    gz_raster_layer_share(layer, x - i - 1, y));
+}
+
+static void planes_have_what_is_drawn_of_all_lattices(void **state)
+{
+	(void)state;
+	static const int methods[] = { GZ_METHOD_STANDARD, GZ_METHOD_ACUITY, GZ_METHOD_MDC,
+				       GZ_METHOD_MDC3 };
+	struct gz_illustrate_points points = { 0 };
+	struct gz_plane planes[GZ_ILLUSTRATE_FOUND] = { 0 };
+	struct gz_workers *workers = NULL;
+	struct easel easel;
+	set_up_easel(&easel);
+	easel.foveation.acuity_slope = 0.4;
+	easel.foveation.mdc_square_px = 24;
+	easel.foveation.mdc3_square_px = 60;
+	assert_int_equal(gz_workers_create(2, &workers), GZ_OK);
+	for (int i = 0; i < GZ_ILLUSTRATE_FOUND; i++)
+		assert_int_equal(
+			gz_plane_resize(&planes[i], gz_illustrate_found_kinds[i], WIDTH, HEIGHT),
+			GZ_OK);
+	for (size_t i = 0; i < sizeof methods / sizeof methods[0]; i++) {
+		easel.foveation.method = methods[i];
+		(void)shot_of(&easel);
+		assert_int_equal(
+			gz_illustrate_points_prepare(&points, &easel.plan, GZ_ILLUSTRATE_FOUND, 2),
+			GZ_OK);
+		assert_true(points.count > 1 || methods[i] == GZ_METHOD_STANDARD);
+		for (int k = 0; k < points.count; k++)
+			fill_points(&points.lattices[k]);
+		for (int k = 1; k < points.count; k++)
+			check_shares(&points.lattices[k].layer);
+		gz_illustrate_points_to_planes(&points, workers, planes);
+		for (int pixel = 0; pixel < PIXELS; pixel++) {
+			const int x = pixel % WIDTH, y = pixel / WIDTH;
+			const float level = level_at(x, y);
+			assert_int_equal(planes[GZ_ILLUSTRATE_IDS].words[pixel], 5);
+			assert_true(fabsf(gz_plane_value(&planes[GZ_ILLUSTRATE_TONE], x, y) -
+					  level) < 1e-5F);
+			assert_true(fabsf(gz_plane_value(&planes[GZ_ILLUSTRATE_DEPTH], x, y) -
+					  2 * level) < 1e-5F);
+			assert_true(fabsf(gz_plane_value(&planes[GZ_ILLUSTRATE_DISTANCE], x, y) -
+					  3 * level) < 1e-5F);
+		}
+	}
+	for (int i = 0; i < GZ_ILLUSTRATE_FOUND; i++)
+		gz_plane_free(&planes[i]);
+	gz_illustrate_points_free(&points);
+	gz_workers_destroy(&workers);
+	take_down_easel(&easel);
+}
+
 static void nothing_in_view_is_white(void **state)
 {
 	(void)state;
@@ -570,13 +656,10 @@ static void shaders_of_illustrations_are_valid_for_the_reference_compiler(void *
 {
 	(void)state;
 	shader_check_needs_validator();
-	for (int program = 0; program < GZ_ILLUSTRATE_PROGRAMS; program++) {
-		struct gz_gl_shader shaders[2];
-		const int count =
-			gz_illustrate_shaders((enum gz_illustrate_program)program, shaders);
-		for (int i = 0; i < count; i++)
-			shader_check(&shaders[i]);
-	}
+	struct gz_gl_shader shaders[2];
+	gz_illustrate_shaders(shaders);
+	shader_check(&shaders[0]);
+	shader_check(&shaders[1]);
 }
 
 TEST_SUITE(illustrate_raster)
@@ -591,6 +674,7 @@ TEST_SUITE(illustrate_raster)
 		cmocka_unit_test(regions_with_a_common_wall_look_as_by_rays),
 		cmocka_unit_test(marks_are_as_dark_as_those_of_rays),
 		cmocka_unit_test(foveated_picture_is_that_of_rays_at_the_gaze),
+		cmocka_unit_test(planes_have_what_is_drawn_of_all_lattices),
 		cmocka_unit_test(nothing_in_view_is_white),
 		cmocka_unit_test(meshes_are_uploaded_when_they_change_and_no_more),
 		cmocka_unit_test(what_the_device_cannot_hold_is_refused_with_one_line),

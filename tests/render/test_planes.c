@@ -367,11 +367,11 @@ static void target_holds_colour_object_and_value_of_what_is_nearest(void **state
 	};
 	for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
 		const int k = places[i].y * SIDE + places[i].x;
-		gz_gl_target_read(&target, GZ_GL_TARGET_COLOUR, words);
+		gz_gl_target_read(&target, GZ_GL_TARGET_COLOUR, target.width, target.height, words);
 		assert_int_equal(words[k], places[i].colour);
-		gz_gl_target_read(&target, GZ_GL_TARGET_ID, words);
+		gz_gl_target_read(&target, GZ_GL_TARGET_ID, target.width, target.height, words);
 		assert_int_equal(words[k], places[i].object);
-		gz_gl_target_read(&target, GZ_GL_TARGET_VALUE, words);
+		gz_gl_target_read(&target, GZ_GL_TARGET_VALUE, target.width, target.height, words);
 		float value;
 		memcpy(&value, &words[k], sizeof value);
 		assert_true(value == places[i].value);

@@ -2,9 +2,6 @@
 
 #include <string.h>
 
-#include <GL/glew.h>
-
-#include "render/layers/gl_layers.h"
 #include "render/opengl/gl_target.h"
 #include "render/reconstruct/gl/gl_plan.h"
 #include "render/surface/gl/raster_meshes.h"
@@ -16,7 +13,6 @@ extern const char gz_glsl_raster_rays_glsl[];
 extern const char gz_glsl_illustrate_block_glsl[];
 extern const char gz_glsl_illustrate_vert[];
 extern const char gz_glsl_illustrate_frag[];
-extern const char gz_glsl_found_comp[];
 
 /* Numbers of other rooms as literal ones, since they are pasted into the shaders' text. */
 #define BLOCK              1
@@ -92,12 +88,8 @@ void gz_illustrate_shader_look_fill(const struct gz_illustrate_look *look,
 	       (GZ_SHADING_LEVELS - 1) * sizeof out_look->levels[0]);
 }
 
-int gz_illustrate_shaders(enum gz_illustrate_program program, struct gz_gl_shader out_shaders[2])
+void gz_illustrate_shaders(struct gz_gl_shader out_shaders[2])
 {
-	if (program == GZ_ILLUSTRATE_PLANES) {
-		out_shaders[0] = gz_gl_layers_shader("found.comp", gz_glsl_found_comp);
-		return 1;
-	}
 	out_shaders[0] = (struct gz_gl_shader) {
 		.stage = GZ_GL_VERTEX,
 		.name = "illustrate.vert",
@@ -112,27 +104,11 @@ int gz_illustrate_shaders(enum gz_illustrate_program program, struct gz_gl_shade
 			   gz_glsl_raster_rays_glsl, gz_glsl_illustrate_frag },
 		.with_430 = true,
 	};
-	return 2;
 }
 
-enum gz_result gz_illustrate_programs_make(struct gz_illustrate_programs *programs,
-					   const struct gz_log *log)
+unsigned gz_illustrate_program(const struct gz_log *log)
 {
-	for (int i = 0; i < GZ_ILLUSTRATE_PROGRAMS; i++) {
-		struct gz_gl_shader shaders[2];
-		const int count = gz_illustrate_shaders((enum gz_illustrate_program)i, shaders);
-		if (!programs->names[i])
-			programs->names[i] = gz_gl_program(shaders, count, remedy, log);
-		if (!programs->names[i])
-			return GZ_ERR_UNSUPPORTED;
-	}
-	return GZ_OK;
-}
-
-void gz_illustrate_programs_free(struct gz_illustrate_programs *programs)
-{
-	for (int i = 0; i < GZ_ILLUSTRATE_PROGRAMS; i++)
-		if (programs->names[i])
-			glDeleteProgram(programs->names[i]);
-	*programs = (struct gz_illustrate_programs) { 0 };
+	struct gz_gl_shader shaders[2];
+	gz_illustrate_shaders(shaders);
+	return gz_gl_program(shaders, 2, remedy, log);
 }

@@ -1,13 +1,12 @@
 /**
  * @file
- * The programs that find the surfaces of illustrations, and what they know of a frame. Within this
+ * The program that finds the surfaces of illustrations, and what it knows of a frame. Within this
  * room and for tests.
  */
 #ifndef GZ_RENDER_ILLUSTRATION_GL_ILLUSTRATE_PROGRAMS_H
 #define GZ_RENDER_ILLUSTRATION_GL_ILLUSTRATE_PROGRAMS_H
 
 #include "base/log.h"
-#include "base/result.h"
 #include "render/illustration/shading_constants.h"
 #include "render/illustration/shared/illustrate_frame.h"
 #include "render/opengl/gl_program.h"
@@ -57,27 +56,11 @@ void gz_illustrate_shader_look_fill(const struct gz_illustrate_look *look,
 /** Binding point of the storage buffer of looks. */
 #define GZ_ILLUSTRATE_STORAGE_LOOKS 3
 
-/** Programs. */
-enum gz_illustrate_program {
-	GZ_ILLUSTRATE_SURFACE, /**< meshes on a lattice: a vertex and a fragment shader */
-	GZ_ILLUSTRATE_PLANES,  /**< planes of the picture from all lattices: a compute shader */
-	GZ_ILLUSTRATE_PROGRAMS,
-};
+/** Make the program that finds meshes on a lattice. Needs a current context. @return OpenGL's name,
+ *  which the caller deletes; 0: the driver refuses it, which is logged */
+unsigned gz_illustrate_program(const struct gz_log *log);
 
-/** OpenGL's names; 0 = not yet made. Zero-initialised has none. */
-struct gz_illustrate_programs {
-	unsigned names[GZ_ILLUSTRATE_PROGRAMS];
-};
-
-/** Make the programs, unless they are there. Needs a current context. GZ_ERR_UNSUPPORTED: the
- * driver refuses one; logged. */
-enum gz_result gz_illustrate_programs_make(struct gz_illustrate_programs *programs,
-					   const struct gz_log *log);
-
-/** Delete them. Needs a current context. */
-void gz_illustrate_programs_free(struct gz_illustrate_programs *programs);
-
-/** The shaders of a program. @return how many: 1 or 2 */
-int gz_illustrate_shaders(enum gz_illustrate_program program, struct gz_gl_shader out_shaders[2]);
+/** Its vertex and its fragment shader. */
+void gz_illustrate_shaders(struct gz_gl_shader out_shaders[2]);
 
 #endif

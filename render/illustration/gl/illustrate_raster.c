@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/workers.h"
+#include "render/illustration/gl/illustrate_points.h"
 #include "render/illustration/gl/illustrate_programs.h"
 #include "render/illustration/shared/illustrate_frame.h"
 #include "render/illustration/shared/illustrate_picture.h"
@@ -37,11 +38,11 @@ struct gz_illustrate_raster {
 	struct gz_image kept; /* a picture that goes back to the device */
 	struct gz_raster_meshes meshes;
 	uint64_t uploaded; /* scene.made when they were; 0: never */
-	struct gz_illustrate_programs programs;
-	struct gz_gl_layers lattices;
+	unsigned program;  /* OpenGL's name; 0: not yet made */
+	struct gz_illustrate_points points;
 	/* Of a layer of surfaces and of the one before, in turn. */
 	struct gz_gl_target targets[2][GZ_PLAN_RECTANGLES_MAX];
-	struct gz_gl_points found; /* planes of one layer of surfaces */
+	struct gz_gl_points shown; /* a picture that stays on the device */
 	struct gz_gl_buffer block, looks;
 	struct gz_gl_timer timer;
 };
@@ -56,13 +57,13 @@ struct illustrate_rastering {
 static void delete_illustrate_objects(struct gz_illustrate_raster *raster)
 {
 	gz_raster_meshes_free(&raster->meshes);
-	gz_illustrate_programs_free(&raster->programs);
-	gz_gl_layers_free(&raster->lattices);
+	if (raster->program)
+		glDeleteProgram(raster->program);
 	for (int i = 0; i < GZ_PLAN_RECTANGLES_MAX; i++) {
 		gz_gl_target_free(&raster->targets[0][i]);
 		gz_gl_target_free(&raster->targets[1][i]);
 	}
-	gz_gl_points_free(&raster->found);
+	gz_gl_points_free(&raster->shown);
 	gz_gl_buffer_free(&raster->block);
 	gz_gl_buffer_free(&raster->looks);
 	gz_gl_timer_free(&raster->timer);
@@ -84,6 +85,7 @@ void gz_illustrate_raster_destroy(struct gz_illustrate_raster **raster)
 	gz_illustrate_scene_free(&self->scene);
 	gz_illustrate_frame_free(&self->frame);
 	gz_illustrate_picture_close(&self->picture);
+	gz_illustrate_points_free(&self->points);
 	gz_image_free(&self->kept);
 	free(self);
 	*raster = NULL;
@@ -172,30 +174,21 @@ _Static_assert(offsetof(struct gz_illustrate_vertex, least) ==
 			       offsetof(struct gz_illustrate_vertex, least) + sizeof(float),
 	       "shaders read three numbers side by side");
 
-/* Make room on the device for the lattices and for what is found on them. */
-static enum gz_result prepare_lattices(struct illustrate_rastering *rastering)
+/* Make the program, and room on the device for the lattices. */
+static enum gz_result prepare_lattices(struct gz_illustrate_raster *raster)
 {
-	struct gz_illustrate_raster *raster = rastering->raster;
-	struct gz_gl_layers *lattices = &raster->lattices;
-	const struct gz_plan *plan = rastering->shot->plan;
-	const size_t words =
-		(size_t)raster->picture.plane_count * (size_t)plan->width * (size_t)plan->height;
-	enum gz_result result = gz_illustrate_programs_make(&raster->programs, raster->log);
-	if (result == GZ_OK)
-		result = gz_gl_layers_prepare(lattices, &raster->device, plan, remedy, raster->log);
+	enum gz_result result = GZ_OK;
+	if (!raster->program)
+		raster->program = gz_illustrate_program(raster->log);
+	if (!raster->program)
+		return GZ_ERR_UNSUPPORTED;
 	for (int k = 0; k < (raster->picture.layers > 1 ? 2 : 1); k++)
-		for (int i = 0; i < lattices->count && result == GZ_OK; i++)
+		for (int i = 0; i < raster->points.count && result == GZ_OK; i++) {
+			const struct gz_raster_layer *layer = &raster->points.lattices[i].layer;
 			result = gz_gl_target_reserve(&raster->targets[k][i], &raster->device,
-						      1U << GZ_GL_TARGET_VECTOR,
-						      lattices->items[i].points[0],
-						      lattices->items[i].points[1], raster->log);
-	if (result != GZ_OK)
-		return result;
-	result = gz_gl_points_prepare(&raster->found, &raster->device, words);
-	if (result != GZ_OK)
-		gz_err(raster->log,
-		       "the graphics device has no room for %d planes of %d x %d px; %s",
-		       raster->picture.plane_count, plan->width, plan->height, remedy);
+						      1U << GZ_GL_TARGET_VECTOR, layer->points[0],
+						      layer->points[1], raster->log);
+		}
 	return result;
 }
 
@@ -273,7 +266,7 @@ static void find_on_lattice(const struct illustrate_rastering *rastering, int la
 {
 	static const float unused[4] = { 0 };
 	const struct gz_illustrate_raster *raster = rastering->raster;
-	const struct gz_raster_layer *lattice = &raster->lattices.items[index];
+	const struct gz_raster_layer *lattice = &raster->points.lattices[index].layer;
 	const struct gz_gl_target *target = &raster->targets[layer % 2][index];
 	const struct gz_gl_target *before = &raster->targets[(layer + 1) % 2][index];
 	gz_gl_target_begin(target);
@@ -281,7 +274,7 @@ static void find_on_lattice(const struct illustrate_rastering *rastering, int la
 	gz_gl_layer_begin(lattice);
 	if (!rastering->any)
 		return;
-	glUseProgram(raster->programs.names[GZ_ILLUSTRATE_SURFACE]);
+	glUseProgram(raster->program);
 	glBindBufferBase(GL_UNIFORM_BUFFER, GZ_GL_BLOCK_TECHNIQUE, raster->block.name);
 	glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GZ_ILLUSTRATE_STORAGE_LOOKS, raster->looks.name);
 	glActiveTexture(GL_TEXTURE0 + GZ_ILLUSTRATE_UNIT_BEFORE);
@@ -296,38 +289,36 @@ static void find_on_lattice(const struct illustrate_rastering *rastering, int la
 	glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-/* Find a layer of surfaces, and make its planes on the device. */
+/* Find a layer of surfaces on all lattices, and bring it to the host. */
 static void find_layer(const struct illustrate_rastering *rastering, int layer)
 {
 	const struct gz_illustrate_raster *raster = rastering->raster;
-	unsigned textures[GZ_PLAN_RECTANGLES_MAX] = { 0 };
-	for (int i = 0; i < raster->lattices.count; i++) {
+	for (int i = 0; i < raster->points.count; i++)
 		find_on_lattice(rastering, layer, i);
-		textures[i] = raster->targets[layer % 2][i].planes[GZ_GL_TARGET_VECTOR];
+	if (layer + 1 == raster->picture.layers)
+		gz_gl_timer_mark(&rastering->raster->timer, &raster->device, MARK_FOUND);
+	for (int i = 0; i < raster->points.count; i++) {
+		const struct gz_illustrate_lattice *lattice = &raster->points.lattices[i];
+		gz_gl_target_read(&raster->targets[layer % 2][i], GZ_GL_TARGET_VECTOR,
+				  lattice->layer.points[0], lattice->layer.points[1],
+				  lattice->vectors);
 	}
-	glUseProgram(raster->programs.names[GZ_ILLUSTRATE_PLANES]);
-	glUniform1i(GZ_GL_LAYERS_OWN, raster->picture.plane_count);
-	gz_gl_layers_run(&raster->lattices, textures, &raster->found);
 }
 
-/* Copy the planes of a layer to the host. */
-static enum gz_result read_layer(struct gz_illustrate_raster *raster, int layer)
+/* Find all layers of surfaces, and make the planes of the picture. */
+static enum gz_result find_layers(const struct illustrate_rastering *rastering)
 {
-	const struct gz_illustrate_picture *picture = &raster->picture;
-	const size_t plane_bytes =
-		sizeof(uint32_t) * (size_t)raster->lattices.width * (size_t)raster->lattices.height;
-	const size_t bytes = (size_t)picture->plane_count * plane_bytes;
-	gz_gl_buffer_bring(&raster->device, &raster->found.points, bytes, &raster->found.staging);
-	const char *words =
-		glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
-	for (int i = 0; words && i < picture->plane_count; i++)
-		memcpy(picture->planes[layer][i].words, words + (size_t)i * plane_bytes,
-		       plane_bytes);
-	if (words)
-		glUnmapBuffer(GL_COPY_READ_BUFFER);
-	enum gz_result result = gz_gl_device_errors(&raster->device);
-	if (result == GZ_OK && !words)
-		result = GZ_ERR_NO_MEM;
+	struct gz_illustrate_raster *raster = rastering->raster;
+	const struct gz_gl_outer_state outer = gz_gl_outer_state_leave();
+	gz_gl_timer_mark(&raster->timer, &raster->device, MARK_START);
+	for (int layer = 0; layer < raster->picture.layers; layer++) {
+		find_layer(rastering, layer);
+		gz_illustrate_points_to_planes(&raster->points, raster->workers,
+					       raster->picture.planes[layer]);
+	}
+	gz_gl_outer_state_return(&outer);
+	glUseProgram(0);
+	const enum gz_result result = gz_gl_device_errors(&raster->device);
 	if (result != GZ_OK)
 		gz_err(raster->log, "%s failed a frame: %s; %s", raster->device.description,
 		       result == GZ_ERR_NO_DEVICE ? "the context is lost" : gz_result_text(result),
@@ -335,20 +326,22 @@ static enum gz_result read_layer(struct gz_illustrate_raster *raster, int layer)
 	return result;
 }
 
-/* Find all layers of surfaces. */
-static enum gz_result find_layers(const struct illustrate_rastering *rastering)
+/* Leave a picture on the device. */
+static enum gz_result upload_picture(struct gz_illustrate_raster *raster,
+				     const struct gz_image *image)
 {
-	struct gz_illustrate_raster *raster = rastering->raster;
-	const struct gz_gl_outer_state outer = gz_gl_outer_state_leave();
-	enum gz_result result = GZ_OK;
-	gz_gl_timer_mark(&raster->timer, &raster->device, MARK_START);
-	for (int layer = 0; layer < raster->picture.layers && result == GZ_OK; layer++) {
-		find_layer(rastering, layer);
-		if (layer + 1 == raster->picture.layers)
-			gz_gl_timer_mark(&raster->timer, &raster->device, MARK_FOUND);
-		result = read_layer(raster, layer);
+	const size_t pixels = (size_t)image->width * (size_t)image->height;
+	enum gz_result result = gz_gl_points_prepare(&raster->shown, &raster->device, pixels);
+	if (result == GZ_OK) {
+		glBindBuffer(GL_COPY_WRITE_BUFFER, raster->shown.points.name);
+		glBufferSubData(GL_COPY_WRITE_BUFFER, 0, (GLsizeiptr)(4 * pixels), image->pixels);
+		glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+		gz_gl_points_to_texture(&raster->shown, image->width, image->height);
+		result = gz_gl_device_errors(&raster->device);
 	}
-	gz_gl_outer_state_return(&outer);
+	if (result != GZ_OK)
+		gz_err(raster->log, "the graphics device has no room for a picture of %d x %d px",
+		       image->width, image->height);
 	return result;
 }
 
@@ -360,15 +353,7 @@ static enum gz_result compose_found(struct gz_illustrate_raster *raster, struct 
 	const enum gz_result result =
 		gz_illustrate_picture_compose(&raster->picture, &raster->scene, &raster->frame,
 					      raster->workers, composed, planes);
-	if (result != GZ_OK || image)
-		return result;
-	glBindBuffer(GL_COPY_WRITE_BUFFER, raster->lattices.picture.points.name);
-	glBufferSubData(
-		GL_COPY_WRITE_BUFFER, 0,
-		(GLsizeiptr)(sizeof(uint32_t) * (size_t)composed->width * (size_t)composed->height),
-		gz_image_words(composed));
-	glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
-	return gz_gl_layers_deliver(&raster->lattices, &raster->device, NULL, raster->log);
+	return result == GZ_OK && !image ? upload_picture(raster, composed) : result;
 }
 
 /* Make the objects' surfaces, and room for the picture on the host. */
@@ -385,9 +370,21 @@ static enum gz_result prepare_host(struct illustrate_rastering *rastering, struc
 		result = gz_illustrate_picture_prepare(&raster->picture, &raster->scene, shot);
 	if (result == GZ_OK)
 		result = gz_illustrate_frame_make(&raster->scene, shot, &camera, &raster->frame);
+	if (result == GZ_OK)
+		result = gz_illustrate_points_prepare(&raster->points, shot->plan,
+						      raster->picture.plane_count,
+						      gz_workers_count(raster->workers));
 	return result == GZ_OK ? gz_image_resize(image ? image : &raster->kept, shot->plan->width,
 						 shot->plan->height)
 			       : result;
+}
+
+static uint64_t points_drawn(const struct gz_illustrate_points *points)
+{
+	uint64_t sum = 0;
+	for (int i = 0; i < points->count; i++)
+		sum += gz_raster_layer_drawn(&points->lattices[i].layer);
+	return sum;
 }
 
 /* Draw on the device, whose context is current. */
@@ -404,7 +401,7 @@ static enum gz_result draw_illustrated_frame(struct illustrate_rastering *raster
 		result = upload_illustrated(raster);
 	const int64_t uploaded_ns = gz_clock_now_ns();
 	if (result == GZ_OK)
-		result = prepare_lattices(rastering);
+		result = prepare_lattices(raster);
 	if (result == GZ_OK)
 		result = fill_numbers(rastering, &rays);
 	if (result == GZ_OK)
@@ -416,7 +413,7 @@ static enum gz_result draw_illustrated_frame(struct illustrate_rastering *raster
 		return result;
 	const double prepare_ms = new_meshes ? gz_ns_to_ms(uploaded_ns - start_ns) : 0;
 	*out_stats = (struct gz_frame_stats) {
-		.rays = gz_gl_layers_drawn(&raster->lattices),
+		.rays = points_drawn(&raster->points),
 		.prepare_ms = prepare_ms,
 		.prepare_within_ms = prepare_ms,
 		.cast_ms = gz_ns_to_ms(found_ns - uploaded_ns),
@@ -451,7 +448,7 @@ enum gz_result gz_illustrate_raster_draw(struct gz_illustrate_raster *raster,
 
 unsigned gz_illustrate_raster_picture(const struct gz_illustrate_raster *raster)
 {
-	return raster->lattices.picture.picture;
+	return raster->shown.picture;
 }
 
 const char *gz_illustrate_raster_describe(const struct gz_illustrate_raster *raster)

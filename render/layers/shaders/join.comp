@@ -1,5 +1,5 @@
 // Joins layers into the picture: each pixel is mixed from the coarsest layer to the finest, by the share of each.
-layout(location = OWN) uniform vec3 background;
+layout(location = BACKGROUND) uniform vec3 background;
 
 layout(binding = UNIT_LAYERS) uniform sampler2D layers[GZ_PLAN_LAYERS_MAX];
 

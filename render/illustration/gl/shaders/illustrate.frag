@@ -22,8 +22,7 @@ layout(std430, binding = STORAGE_LOOKS) readonly buffer Looks
 	Look looks[];
 };
 
-// Tone, depth in mm, the object's number, distance to the chosen object in mm. The number of a transparent object is
-// negative; 0: nothing.
+// enum gz_illustrate_vector of illustrate_points.h
 layout(location = TARGET_FOUND) out vec4 found;
 
 // Where what an opaque surface hides ends, and what is as near as the layer before.
