@@ -123,6 +123,11 @@ static void slices_are_refused_once_in_a_picture_on_cpu(void **state)
 	const int told = all.captured.messages;
 	make_with(&all, choice_of("slices"), second);
 	assert_int_equal(all.captured.messages, told);
+	assert_int_equal(gz_frame_maker_scene(all.maker)->settings.technique, 0);
+	/* Who chooses it again is told again. */
+	make_with(&all, 0, second);
+	make_with(&all, choice_of("slices"), second);
+	assert_true(all.captured.messages > told);
 	end_switching(&all);
 }
 

@@ -806,6 +806,8 @@ static enum gz_result follow_technique(struct gz_frame_maker *maker, int techniq
 {
 	int *shown = &maker->scene.settings.technique;
 	const int before = *shown;
+	if (technique == before)
+		maker->refused_technique = 0;
 	if (technique == before || technique == maker->refused_technique)
 		return GZ_OK;
 	maker->refused_technique = 0;

@@ -84,6 +84,10 @@ static enum gz_result cast_picture(struct gz_window *window, const struct gz_win
 	enum gz_result r = gz_frame_make(window->maker, &request, &image, &window->record);
 	if (r != GZ_OK)
 		return r;
+	/* One that was refused is not in force. Why has been logged. */
+	settings.technique = gz_frame_maker_scene(window->maker)->settings.technique;
+	if (!window->alone)
+		window->settings.technique = settings.technique;
 	if (!window->any_shown || !gz_scene_settings_same(&window->made, &settings))
 		window->motion_ns = gz_clock_now_ns();
 	note_made(window, &settings);
