@@ -164,7 +164,7 @@ struct gz_window_part {
 	ROW(transfer)      /* edits the transfer function */ \
 	ROW(time)          /* shows the time points of a series */ \
 	ROW(replay)        /* shows a session again; behind all that change the gaze */ \
-	ROW(isovalue)      /* surfaces without triangles while they change; behind replay */ \
+	ROW(surface)       /* surfaces without triangles while they change; behind replay */ \
 	ROW(labels)        /* surfaces of labels with other settings */ \
 	ROW(session)       /* records sessions; behind all that change the gaze */ \
 	ROW(full_picture)  /* saves pictures of full quality */ \

@@ -1,21 +1,24 @@
-/* The part that shows a surface without triangles while its isovalue changes, and until those of
- * the new one are made. */
+/* The part that shows a surface without triangles while its isovalue or its time point changes, and
+ * until those of the new one are made. */
 #include <math.h>
 
 #include <GLFW/glfw3.h>
 
 #include "render/light/surface_look.h"
-#include "view/frame/isovalue_rest.h"
+#include "view/frame/surface_rest.h"
 #include "view/settings/scene_keys.h"
+#include "view/window/time.h"
 #include "view/window/window_state.h"
 
-struct gz_window_isovalue {
-	struct gz_isovalue_rest rest;
+struct gz_window_surface {
+	struct gz_surface_rest rest;
 };
 
-static bool is_mouse_held(const struct gz_window *window)
+/* Whether the surface may change again at any moment. */
+static bool is_surface_held(const struct gz_window *window)
 {
-	return glfwGetMouseButton(window->glfw, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+	return glfwGetMouseButton(window->glfw, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS ||
+	       gz_window_time_plays(window);
 }
 
 /* Whether triangles are made of the scene's volume, and rays could find the surface without them.
@@ -37,22 +40,25 @@ static void wake_loop_for_triangles(void *user)
 	glfwPostEmptyEvent();
 }
 
-static void forget_isovalue(struct gz_window *window)
+static void forget_surface(struct gz_window *window)
 {
-	window->isovalue->rest = (struct gz_isovalue_rest) { 0 };
+	window->surface->rest = (struct gz_surface_rest) { 0 };
 	window->without_triangles = false;
 }
 
-static void watch_isovalue(struct gz_window *window, struct gz_window_gaze *gaze)
+static void watch_surface(struct gz_window *window, struct gz_window_gaze *gaze)
 {
 	if (!can_do_without_triangles(window, gaze)) {
-		forget_isovalue(window);
+		forget_surface(window);
 		return;
 	}
 	const bool before = window->without_triangles;
-	const bool moves = gz_isovalue_rest_step(&window->isovalue->rest,
-						 window->settings.rays.surface.isovalue,
-						 is_mouse_held(window), gz_clock_now_ns());
+	const struct gz_surface_state state = {
+		.isovalue = window->settings.rays.surface.isovalue,
+		.time_point = gz_frame_time_point(window->maker),
+	};
+	const bool moves = gz_surface_rest_step(&window->surface->rest, &state,
+						is_surface_held(window), gz_clock_now_ns());
 	window->without_triangles =
 		moves ||
 		(before && gz_frame_prepare(window->maker, &window->settings,
@@ -60,20 +66,20 @@ static void watch_isovalue(struct gz_window *window, struct gz_window_gaze *gaze
 	window->cast_needed = window->cast_needed || window->without_triangles != before;
 }
 
-/* Letting go of the mouse is an event. */
-static double isovalue_patience_s(const struct gz_window *window)
+/* Letting go of the mouse is an event, and so is the end of playing. */
+static double surface_patience_s(const struct gz_window *window)
 {
-	return window->isovalue->rest.moves && !is_mouse_held(window)
-		       ? gz_ns_to_s(gz_isovalue_rest_left_ns(&window->isovalue->rest,
-							     gz_clock_now_ns()))
+	return window->surface->rest.moves && !is_surface_held(window)
+		       ? gz_ns_to_s(
+				 gz_surface_rest_left_ns(&window->surface->rest, gz_clock_now_ns()))
 		       : INFINITY;
 }
 
-const struct gz_window_part gz_window_isovalue_part = {
-	.name = "isovalue",
-	GZ_PART_STATE(isovalue),
-	.scene_shown = forget_isovalue,
-	.scene_leaving = forget_isovalue,
-	.gaze = watch_isovalue,
-	.patience_s = isovalue_patience_s,
+const struct gz_window_part gz_window_surface_part = {
+	.name = "surface",
+	GZ_PART_STATE(surface),
+	.scene_shown = forget_surface,
+	.scene_leaving = forget_surface,
+	.gaze = watch_surface,
+	.patience_s = surface_patience_s,
 };

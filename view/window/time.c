@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "render/data/time_steps.h"
 #include "view/panels/widgets.h"
+#include "view/window/time.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -32,6 +33,11 @@ struct gz_window_time {
 static bool is_series_shown(const struct gz_window *window)
 {
 	return window->maker && !window->alone && gz_frame_time_points(window->maker) > 1;
+}
+
+bool gz_window_time_plays(const struct gz_window *window)
+{
+	return window->time->playback.playing;
 }
 
 /* Called on the thread that loads. */
