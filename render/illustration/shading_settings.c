@@ -114,7 +114,7 @@ void gz_illustration_apply(const struct gz_illustration_settings *combined,
 	settings->edge_light = combined->spatial_effect;
 	settings->overlap_shadow = combined->spatial_effect;
 	settings->haze = combined->spatial_effect;
-	settings->haze_near = 0.6 * combined->foreground;
+	settings->haze_near = GZ_HAZE_NEAR_OF_FOREGROUND * combined->foreground;
 	settings->haze_exponent = 0.5 * exp2(2 * combined->foreground);
 	settings->importance = shown == GZ_SHOWS_IMPORTANCE;
 	settings->viewer_distance = shown == GZ_SHOWS_VIEWER_DISTANCE;

@@ -59,6 +59,9 @@ struct gz_illustration_settings {
 	int scene_information;   /**< enum gz_scene_information */
 };
 
+/** Depth from which on there is haze, for each share of the foreground: gz_illustration_apply(). */
+#define GZ_HAZE_NEAR_OF_FOREGROUND 0.6
+
 /** The table of struct gz_illustration_settings. */
 extern const struct gz_option gz_illustration_options[];
 /** Its rows. */

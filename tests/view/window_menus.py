@@ -145,6 +145,24 @@ class Menus(WindowCase):
         self.press("Return")
         self.until(lambda p: self.amber_letters_left(p) > 20, "the region that was found")
 
+    def test_parameter_of_an_illustration_is_chosen_by_its_picture(self):
+        self.own = write_labels(self.place.name, "[render]", "technique = illustrate", "[camera]",
+                                "eye = 0 -2.5 0.8")
+        self.start("--gaze", "mouse", "--backend", "cpu", scene=self.own)
+        self.press("shift+i")
+        self.click(280, 91)  # Look is folded
+        part = (180, 128, 266, 182)  # of the gallery, "plain"
+        self.until(lambda p: len(self.greys(p, part)) > 20, "a small picture")
+        self.click(223, 155)
+        self.press("shift+i")
+        self.assertIn("show = plain", self.saved())
+        self.press("ctrl+z")
+        self.assertEqual(self.title()[0], "*")
+
+    def greys(self, picture, part):
+        left, top, right, bottom = part
+        return {picture.at(x, y) for x in range(left, right) for y in range(top, bottom)}
+
     def is_blue(self, pixel):
         return pixel[2] > pixel[0] + 60
 

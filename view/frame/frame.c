@@ -67,6 +67,7 @@ struct gz_frame_maker {
 		int width, height;
 	} last; /* what the last frame showed; valid with any_shown */
 	bool any_shown;
+	struct gz_plan preview; /* of gz_frame_preview() */
 	struct {
 		int method, width, height;
 	} spent; /* method and size the budget's times belong to */
@@ -956,6 +957,29 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	return GZ_OK;
 }
 
+enum gz_result gz_frame_preview(struct gz_frame_maker *maker,
+				const struct gz_scene_settings *settings, int width, int height,
+				struct gz_image *image)
+{
+	const struct gz_foveation full = gz_foveation_full();
+	const struct gz_display display = gz_display_default(width, height);
+	const struct gz_picture_request request = {
+		.camera = &settings->camera,
+		.settings = &settings->rays,
+		.foveation = &full,
+		.display = &display,
+		.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F }),
+		.width = width,
+		.height = height,
+		.loss_returned = true,
+		.plan = &maker->preview,
+		.image = image,
+	};
+	struct gz_image *made;
+	return maker->pictures ? gz_picture_make(maker->pictures, &request, &made, NULL)
+			       : GZ_ERR_INVAL;
+}
+
 uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_settings *settings,
 			    int width, int height, struct gz_point point)
 {
@@ -1002,6 +1026,7 @@ void gz_frame_maker_destroy(struct gz_frame_maker **maker)
 		return;
 	gz_frame_drop_labels(*maker);
 	gz_frame_maker_stop(*maker);
+	gz_plan_free(&(*maker)->preview);
 	free_time_points((*maker)->time_points);
 	gz_scene_free(&(*maker)->scene);
 	free(*maker);

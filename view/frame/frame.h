@@ -264,6 +264,17 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 			     struct gz_image **out_image, struct gz_frame_record *out_record);
 
 /**
+ * Make a small picture beside the frames, with all rays, of what the last frame showed. What frames
+ * accumulate starts again.
+ *
+ * @param[in,out] image  resized
+ * @return the results of gz_frame_make(); logged
+ */
+enum gz_result gz_frame_preview(struct gz_frame_maker *maker,
+				const struct gz_scene_settings *settings, int width, int height,
+				struct gz_image *image);
+
+/**
  * The object that is seen most at a point of a picture.
  *
  * @param settings  of the picture; it shows what the last frame showed

@@ -161,6 +161,7 @@ struct gz_window_part {
 	ROW(series)        /* asks which of several series is to be shown */ \
 	ROW(notices)       /* shows messages */ \
 	ROW(objects)       /* lists what is shown */ \
+	ROW(illustration)  /* how illustrations are shaded */ \
 	ROW(transfer)      /* edits the transfer function */ \
 	ROW(time)          /* shows the time points of a series */ \
 	ROW(replay)        /* shows a session again; behind all that change the gaze */ \

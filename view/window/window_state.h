@@ -58,6 +58,7 @@ struct gz_window {
 	struct gz_window_gaze_panel *gaze_panel;
 	struct gz_window_history *history;
 	struct gz_window_surface *surface;
+	struct gz_window_illustration *illustration;
 	struct gz_window_keys *keys;
 	struct gz_window_latency *latency;
 	struct gz_window_loading *loading;
