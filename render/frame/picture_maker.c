@@ -375,6 +375,32 @@ enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
 		       : GZ_ERR_INVAL;
 }
 
+enum gz_result gz_picture_print(struct gz_picture_maker *maker,
+				const struct gz_picture_request *request,
+				const struct gz_print *print)
+{
+	const struct gz_foveation full = gz_foveation_full();
+	struct gz_picture_request whole = *request;
+	struct gz_image *image;
+	struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
+	if (!drawer)
+		return GZ_ERR_INVAL;
+	if (!drawer->ops->print) {
+		gz_err(maker->log,
+		       "%s: nothing in the picture is drawn by marks; use --technique "
+		       "illustrate",
+		       print->path);
+		return GZ_ERR_UNSUPPORTED;
+	}
+	whole.foveation = &full;
+	whole.focus = gz_focus_at((struct gz_point) { 0.5F, 0.5F });
+	whole.temporal = NULL;
+	whole.on_device = false;
+	whole.strip.rows = 0;
+	const enum gz_result result = gz_picture_make(maker, &whole, &image, NULL);
+	return result == GZ_OK ? drawer->ops->print(drawer, print) : result;
+}
+
 unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker)
 {
 	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);

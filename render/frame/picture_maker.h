@@ -154,6 +154,23 @@ enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
 				     const struct gz_pick_request *request,
 				     struct gz_pick *out_pick);
 
+/**
+ * Make a picture and write the marks that draw it as a file for print. Every pixel is cast,
+ * wherever somebody looks. The maker's own picture and plan change.
+ *
+ * @param request  of the picture; its size decides how large marks are on paper, and foveation,
+ *                 focus, strip and accumulation do not count
+ * @param print    path, and size on paper
+ * @retval GZ_ERR_UNSUPPORTED  what is shown is not drawn by marks at all; logged
+ * @retval GZ_ERR_INVAL        not drawn by marks with these settings, or a size or ending is not
+ *                             valid; logged
+ * @retval GZ_ERR_IO, GZ_ERR_FULL  the file cannot be written; logged
+ * @return otherwise what gz_picture_make() returns
+ */
+enum gz_result gz_picture_print(struct gz_picture_maker *maker,
+				const struct gz_picture_request *request,
+				const struct gz_print *print);
+
 /** OpenGL's name of the texture with the last picture that stayed on the device, valid until the
  * next picture. 0: none. */
 unsigned gz_picture_maker_texture(const struct gz_picture_maker *maker);

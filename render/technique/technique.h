@@ -132,6 +132,15 @@ struct gz_pick {
 /** The object that is seen most at a place; 0: none. */
 uint32_t gz_pick_most_seen(const struct gz_pick *pick);
 
+/** A drawing for print. */
+struct gz_print {
+	/** Its ending says what it is: .svg, marks in millimetres, or .png, of any size. Borrowed.
+	 */
+	const char *path;
+	double width_mm; /**< of the picture on paper, above 0 */
+	double dpi;      /**< .png: pixels of 25.4 mm, above 0 */
+};
+
 struct gz_drawer;
 
 /** What a technique must provide to draw. Every table is const and has static storage. One thread
@@ -170,6 +179,9 @@ struct gz_drawer_ops {
 	/** Optional. Take from another drawer of the technique, which shows the same objects by
 	 *  another backend, what it has prepared and this one would prepare alike. */
 	void (*take_prepared)(struct gz_drawer *drawer, struct gz_drawer *from);
+	/** Optional. Write the marks that drew the last picture. GZ_ERR_INVAL: no marks drew it, or
+	 * a size or ending is not valid. Otherwise fails as writing files does; logged. */
+	enum gz_result (*print)(struct gz_drawer *drawer, const struct gz_print *print);
 	/** Whether the picture of a shot can stay on the device. If not, draw needs an image. */
 	bool (*keeps_on_device)(const struct gz_drawer *drawer, const struct gz_shot *shot);
 	/** OpenGL's name of the texture (RGBA8, row 0 on top) that holds the last picture drawn

@@ -35,6 +35,12 @@ no_other_threads = unittest.skipIf(
     os.environ.get("SANITIZED") == "thread", "only what several threads do is of interest")
 
 
+def darkness(path):
+    """The mean ink of a picture, 0 to 1."""
+    picture = read_png(path)
+    return 1 - sum(map(sum, picture.rows)) / (3 * 255 * picture.width * picture.height)
+
+
 class Headless(unittest.TestCase):
     def setUp(self):
         self.place = tempfile.TemporaryDirectory(prefix="gazecast-test-headless-")
@@ -501,6 +507,45 @@ class Headless(unittest.TestCase):
         process.communicate()
         self.assertEqual(ended, -signal.SIGTERM)
         self.assertEqual(self.frames(), [])
+
+    @no_other_threads
+    def test_drawing_is_printed_at_any_size(self):
+        drawn = ("--technique", "illustrate", "--isovalue", "0.5", "--illustration.drawing",
+                 "stipples", "--illustration.pen_width", "1", "--print-mm", "50.8")
+        svg, png = self.path("a.svg"), self.path("a.png")
+        if "Embree" in self.render(*drawn, "--backend", "cpu").stderr:
+            self.skipTest("needs Embree")
+        self.good(*drawn, "--print", svg)
+        with open(svg, encoding="utf-8") as source:
+            text = source.read()
+        self.assertRegex(text, r'<svg [^>]*width="50\.8\d*mm"')
+        self.assertGreater(text.count("<circle"), 50)
+        self.assertIn("<path", text)  # its outline
+        self.good(*drawn, "--print", png, "--print-dpi", 150, "--method", "standard", "--out",
+                  self.path("screen.png"))
+        printed = read_png(png)
+        self.assertEqual((printed.width, printed.height), (300, 200))
+        dark = [darkness(png), darkness(self.path("screen.png"))]
+        self.assertAlmostEqual(dark[0], dark[1], delta=0.02)
+
+    @no_other_threads
+    def test_what_cannot_be_printed_is_refused(self):
+        grey = ("--technique", "illustrate", "--isovalue", "0.5", "--print", self.path("a.svg"))
+        if "Embree" in self.render(*grey, "--backend", "cpu").stderr:
+            self.skipTest("needs Embree")
+        inked = (*grey[:-1], self.path("a.pdf"), "--illustration.drawing", "hatches")
+        for options, word in (
+            (grey, "illustration.drawing"),
+            (inked, ".pdf: unknown ending"),
+            ((*SURFACE, "--print", self.path("a.svg")), "--technique illustrate"),
+            ((*inked[:-3], self.path("no/a.svg"), *inked[-2:]), "create that folder"),
+            ((*inked[:-3], self.path("a.png"), *inked[-2:], "--print-mm", 9000, "--print-dpi",
+              20000), "131072"),
+        ):
+            done = self.render(*options)
+            self.assertGreater(done.returncode, 0)
+            self.assertIn(word, done.stderr)
+        self.assertEqual(os.listdir(self.place.name), [])
 
     @no_other_threads
     def test_help_version_and_formats_go_to_stdout(self):

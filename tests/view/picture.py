@@ -74,10 +74,10 @@ def paeth(a, b, c):
     return min((a, b, c), key=lambda v: abs(p - v))
 
 
-def unfilter(kind, row, above):
+def unfilter(kind, row, above, channels):
     for i in range(len(row)):
-        left = row[i - 3] if i >= 3 else 0
-        corner = above[i - 3] if i >= 3 else 0
+        left = row[i - channels] if i >= channels else 0
+        corner = above[i - channels] if i >= channels else 0
         if kind == 1:
             row[i] = (row[i] + left) & 255
         elif kind == 2:
@@ -89,6 +89,7 @@ def unfilter(kind, row, above):
 
 
 def read_png(path):
+    """An 8-bit PNG, RGB or grey. -> a Picture, whose channels are alike if the file is grey"""
     with open(path, "rb") as source:
         data = source.read()
     assert data[:8] == b"\x89PNG\r\n\x1a\n", path + " is no PNG"
@@ -102,13 +103,14 @@ def read_png(path):
             packed += body
         at += 12 + length
     width, height = size[:2]
-    assert size[2:] == (8, 2, 0, 0, 0), "not 8-bit RGB: %r" % (size,)
-    raw, rows, above = zlib.decompress(packed), [], bytearray(3 * width)
+    assert size[2] == 8 and size[3] in (0, 2) and size[4:] == (0, 0, 0), "not 8-bit: %r" % (size,)
+    channels = 3 if size[3] == 2 else 1
+    raw, rows, above = zlib.decompress(packed), [], bytearray(channels * width)
     for y in range(height):
-        start = y * (3 * width + 1)
-        row = bytearray(raw[start + 1 : start + 1 + 3 * width])
-        unfilter(raw[start], row, above)
-        rows.append(row)
+        start = y * (channels * width + 1)
+        row = bytearray(raw[start + 1 : start + 1 + channels * width])
+        unfilter(raw[start], row, above, channels)
+        rows.append(row if channels == 3 else bytes(value for value in row for _ in range(3)))
         above = row
     return Picture(width, height, rows)
 

@@ -56,6 +56,8 @@ enum gz_result gz_output_check(const struct gz_view_options *options, const stru
 		r = check_folder("video", options->video, log);
 	if (r == GZ_OK && !is_writable_file(options->stats, true))
 		r = check_folder("stats", options->stats, log);
+	if (r == GZ_OK && !is_writable_file(options->print, true))
+		r = check_folder("print", options->print, log);
 	if (r == GZ_OK && !is_writable_file(options->write_mesh, false))
 		r = check_folder("write-mesh", options->write_mesh, log);
 	return r == GZ_OK ? check_folder("write-volume", options->write_volume, log) : r;

@@ -16,8 +16,8 @@
 void gz_output_folder(const char *path, char *out, size_t size);
 
 /**
- * Check that the files of --out, --video, --stats, --write-mesh and --write-volume can be written:
- * each exists and is writable, or its folder is.
+ * Check that the files of --out, --print, --video, --stats, --write-mesh and --write-volume can be
+ * written: each exists and is writable, or its folder is.
  *
  * @retval GZ_ERR_IO  one cannot be written; logged with the option and the remedy
  */

@@ -822,13 +822,11 @@ static enum gz_result follow_technique(struct gz_frame_maker *maker, int techniq
 	return show_scene_objects(maker);
 }
 
-static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
-					 const struct gz_frame_request *request,
-					 struct gz_image **out_image,
-					 struct gz_frame_record *record)
+static struct gz_picture_request picture_of_frame(const struct gz_frame_maker *maker,
+						  const struct gz_frame_request *request)
 {
 	const struct gz_scene_settings *settings = request->settings;
-	const struct gz_picture_request picture = {
+	return (struct gz_picture_request) {
 		.camera = &settings->camera,
 		.settings = &settings->rays,
 		.foveation = &settings->foveation,
@@ -841,10 +839,18 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 		.on_device = request->on_device,
 		.loss_returned = request->loss_is_callers,
 	};
+}
+
+static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
+					 const struct gz_frame_request *request,
+					 struct gz_image **out_image,
+					 struct gz_frame_record *record)
+{
+	const struct gz_picture_request picture = picture_of_frame(maker, request);
 	struct gz_picture_cost cost;
-	enum gz_result r = follow_objects(maker, settings);
+	enum gz_result r = follow_objects(maker, request->settings);
 	if (r == GZ_OK)
-		r = follow_technique(maker, settings->technique);
+		r = follow_technique(maker, request->settings->technique);
 	if (r == GZ_OK)
 		r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
 	if (r != GZ_OK)
@@ -985,6 +991,16 @@ uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_
 {
 	const int size_px[2] = { width, height };
 	return object_at(maker, &settings->camera, &settings->rays, size_px, point);
+}
+
+enum gz_result gz_frame_print(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			      const struct gz_print *print)
+{
+	const struct gz_picture_request picture = picture_of_frame(maker, request);
+	enum gz_result r = follow_objects(maker, request->settings);
+	if (r == GZ_OK)
+		r = follow_technique(maker, request->settings->technique);
+	return r == GZ_OK ? gz_picture_print(maker->pictures, &picture, print) : r;
 }
 
 unsigned gz_frame_texture(const struct gz_frame_maker *maker)

@@ -285,6 +285,16 @@ enum gz_result gz_frame_preview(struct gz_frame_maker *maker,
 uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_settings *settings,
 			    int width, int height, struct gz_point point);
 
+/**
+ * Write the drawing of a frame for print: the marks that draw it, with every pixel cast, wherever
+ * somebody looks. The frame must be drawn by marks: illustration.drawing is stipples or hatches.
+ *
+ * @param request  of the frame; its size in pixels decides how large marks are on paper
+ * @return what gz_picture_print() returns; logged
+ */
+enum gz_result gz_frame_print(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			      const struct gz_print *print);
+
 /** OpenGL's name of the texture with the last picture that stayed on the device. Valid until the
  * next frame. */
 unsigned gz_frame_texture(const struct gz_frame_maker *maker);

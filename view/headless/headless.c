@@ -346,6 +346,17 @@ static enum gz_result begin_session(struct headless *self, const struct gz_displ
 	return gz_recording_begin(&start, self->log, &self->session);
 }
 
+/* Write the drawing of the last frame for print. */
+static enum gz_result print_drawing(struct headless *self, const struct gz_frame_request *request,
+				    int frame)
+{
+	const struct gz_view_options *options = self->options;
+	const struct gz_print print = { options->print, options->print_mm, options->print_dpi };
+	if (!options->print[0] || frame != options->frames - 1)
+		return GZ_OK;
+	return gz_frame_print(self->maker, request, &print);
+}
+
 /* Render a frame and write everything the options ask for. */
 static enum gz_result make_headless_frame(struct headless *self,
 					  const struct gz_frame_request *request, int frame)
@@ -362,7 +373,9 @@ static enum gz_result make_headless_frame(struct headless *self,
 		r = gz_stats_add(self->stats, &record);
 	if (r == GZ_OK && self->replay)
 		gz_replay_compare(self->replay, &record);
-	return r == GZ_OK ? write_headless_picture(self, request, image, &record, frame) : r;
+	if (r == GZ_OK)
+		r = write_headless_picture(self, request, image, &record, frame);
+	return r == GZ_OK ? print_drawing(self, request, frame) : r;
 }
 
 /* Show the time point of a frame, and load the next one ahead. */
@@ -477,8 +490,8 @@ static void warn_of_budget(const struct headless *self)
 /* Several frames without a file measure the time; a single one is a picture that somebody wants. */
 static void tell_of_lost_picture(const struct gz_view_options *options, const struct gz_log *log)
 {
-	if (!options->out[0] && !options->video[0] && !options->stats[0] && !options->record[0] &&
-	    !options->replay[0] && options->frames == 1)
+	if (!options->out[0] && !options->print[0] && !options->video[0] && !options->stats[0] &&
+	    !options->record[0] && !options->replay[0] && options->frames == 1)
 		gz_info(log, "the picture is not kept; --out FILE.png writes it");
 }
 

@@ -54,6 +54,13 @@ const struct gz_option gz_view_option_table[] = {
 	{ "out", GZ_OPTION_STRING, AT(out), .max = GZ_PATH_SIZE,
 	  .help = "PNG file to write, headless; several frames need a pattern such as "
 		  "frame-%04d.png" },
+	{ "print", GZ_OPTION_STRING, AT(print), .max = GZ_PATH_SIZE,
+	  .help = "file for print to write, headless, of the last picture's stipples or hatches, "
+		  "with every pixel cast: .svg, or .png of any size" },
+	{ "print-mm", GZ_OPTION_DOUBLE, AT(print_mm), 1, 10000, .preset = "160",
+	  .help = "width of --print on paper, mm" },
+	{ "print-dpi", GZ_OPTION_DOUBLE, AT(print_dpi), 1, 20000, .preset = "600",
+	  .help = "resolution of --print FILE.png, pixels per inch" },
 	{ "video", GZ_OPTION_STRING, AT(video), .max = GZ_PATH_SIZE,
 	  .help = "video file to write with ffmpeg, headless, at --fps: .mp4 or another ending "
 		  "that ffmpeg knows" },

@@ -66,6 +66,8 @@ struct gz_view_options {
 	int frames;
 	char out[GZ_PATH_SIZE];          /**< empty: write no pictures */
 	char video[GZ_PATH_SIZE];        /**< empty: none */
+	char print[GZ_PATH_SIZE];        /**< a drawing for print; empty: none */
+	double print_mm, print_dpi;      /**< its width, mm, and resolution */
 	char record[GZ_PATH_SIZE];       /**< folder of a session; empty: none */
 	char replay[GZ_PATH_SIZE];       /**< folder of a session; empty: none */
 	char pictures[GZ_PATH_SIZE];     /**< folder for the files a window writes */

@@ -60,6 +60,14 @@ enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
 	return GZ_ERR_UNSUPPORTED;
 }
 
+enum gz_result gz_illustrate_caster_print(const struct gz_illustrate_caster *caster,
+					  const struct gz_print *print)
+{
+	(void)caster;
+	(void)print;
+	return GZ_ERR_UNSUPPORTED;
+}
+
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)
 {
 	(void)caster;

@@ -314,6 +314,13 @@ enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
 	return GZ_OK;
 }
 
+enum gz_result gz_illustrate_caster_print(const struct gz_illustrate_caster *caster,
+					  const struct gz_print *print)
+{
+	return gz_illustrate_drawing_print(&caster->picture.drawing, print, caster->workers,
+					   caster->log);
+}
+
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)
 {
 	return caster->description;

@@ -77,6 +77,10 @@ enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
 					 const struct gz_pick_request *request,
 					 struct gz_pick *out_pick);
 
+/** Write the marks that drew the last picture. @return as gz_illustrate_drawing_print() */
+enum gz_result gz_illustrate_caster_print(const struct gz_illustrate_caster *caster,
+					  const struct gz_print *print);
+
 /** One line for reports, such as "avx2, 2 threads"; owned by the caster. */
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster);
 

@@ -451,6 +451,13 @@ unsigned gz_illustrate_raster_picture(const struct gz_illustrate_raster *raster)
 	return raster->shown.picture;
 }
 
+enum gz_result gz_illustrate_raster_print(const struct gz_illustrate_raster *raster,
+					  const struct gz_print *print)
+{
+	return gz_illustrate_drawing_print(&raster->picture.drawing, print, raster->workers,
+					   raster->log);
+}
+
 const char *gz_illustrate_raster_describe(const struct gz_illustrate_raster *raster)
 {
 	return raster->device.description;

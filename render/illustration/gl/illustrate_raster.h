@@ -58,6 +58,10 @@ enum gz_result gz_illustrate_raster_draw(struct gz_illustrate_raster *raster,
 					 const struct gz_illustrate_planes *planes,
 					 struct gz_frame_stats *out_stats);
 
+/** Write the marks that drew the last picture. @return as gz_illustrate_drawing_print() */
+enum gz_result gz_illustrate_raster_print(const struct gz_illustrate_raster *raster,
+					  const struct gz_print *print);
+
 /** OpenGL's name of the texture with the last picture drawn without an image; 0: none. */
 unsigned gz_illustrate_raster_picture(const struct gz_illustrate_raster *raster);
 

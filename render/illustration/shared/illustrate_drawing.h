@@ -11,6 +11,7 @@
 
 #include <stddef.h>
 
+#include "base/log.h"
 #include "base/result.h"
 #include "base/workers.h"
 #include "render/illustration/hatch_lines.h"
@@ -19,6 +20,7 @@
 #include "render/illustration/stipple_points.h"
 #include "render/picture/image.h"
 #include "render/picture/plane.h"
+#include "render/technique/technique.h"
 
 /** The marks of a picture. Zero-initialised is empty; keep it from picture to picture. */
 struct gz_illustrate_drawing {
@@ -66,6 +68,21 @@ enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
  *  size; every pixel is written @retval GZ_ERR_NO_MEM */
 enum gz_result gz_illustrate_drawing_finish(struct gz_illustrate_drawing *drawing,
 					    struct gz_workers *workers, struct gz_image *image);
+
+/**
+ * Write the marks of the last picture as a file for print, and lines as strokes between their
+ * pixels. Marks keep their share of the picture's width.
+ *
+ * @param log  may be NULL
+ * @retval GZ_ERR_INVAL   no marks drew the last picture, the ending is neither .svg nor .png, or a
+ *                        size is out of range: a PNG has 1 to GZ_STIPPLE_SIDE_MAX pixels a side;
+ *                        logged
+ * @retval GZ_ERR_NO_MEM  out of memory; no file is left
+ * @return otherwise as gz_stipple_write_png() and gz_stipple_svg_close()
+ */
+enum gz_result gz_illustrate_drawing_print(const struct gz_illustrate_drawing *drawing,
+					   const struct gz_print *print, struct gz_workers *workers,
+					   const struct gz_log *log);
 
 /** Free all and zero it. */
 void gz_illustrate_drawing_free(struct gz_illustrate_drawing *drawing);

@@ -122,6 +122,13 @@ static enum gz_result illustrate_pick(struct gz_drawer *drawer,
 	return gz_illustrate_caster_pick(self->caster, &illustrated, request, out_pick);
 }
 
+static enum gz_result illustrate_print(struct gz_drawer *drawer, const struct gz_print *print)
+{
+	const struct illustrate_drawer *self = illustrate_of(drawer);
+	return self->raster ? gz_illustrate_raster_print(self->raster, print)
+			    : gz_illustrate_caster_print(self->caster, print);
+}
+
 static bool illustrate_keeps_on_device(const struct gz_drawer *drawer, const struct gz_shot *shot)
 {
 	(void)shot;
@@ -159,6 +166,7 @@ static const struct gz_drawer_ops illustrate_ops = {
 	.show = illustrate_show,
 	.draw = illustrate_draw,
 	.pick = illustrate_pick,
+	.print = illustrate_print,
 	.keeps_on_device = illustrate_keeps_on_device,
 	.picture_texture = illustrate_picture_texture,
 	.backend = illustrate_backend,
