@@ -145,9 +145,9 @@ class Menus(WindowCase):
         self.press("Return")
         self.until(lambda p: self.amber_letters_left(p) > 20, "the region that was found")
 
-    def test_parameter_of_an_illustration_is_chosen_by_its_picture(self):
+    def test_illustration_is_looked_at_by_parameters_and_printed(self):
         self.own = write_labels(self.place.name, "[render]", "technique = illustrate", "[camera]",
-                                "eye = 0 -2.5 0.8")
+                                "eye = 0 -2.5 0.8", "[illustration]", "drawing = stipples")
         self.start("--gaze", "mouse", "--backend", "cpu", scene=self.own)
         self.press("shift+i")
         self.click(280, 91)  # Look is folded
@@ -158,6 +158,14 @@ class Menus(WindowCase):
         self.assertIn("show = plain", self.saved())
         self.press("ctrl+z")
         self.assertEqual(self.title()[0], "*")
+        # Points are written for print.
+        out = os.path.join(self.place.name, "two.svg")
+        self.press("ctrl+shift+e")
+        self.click(185, 140)
+        self.press("Return")
+        self.wait_for(lambda: os.path.exists(out), "a drawing for print")
+        with open(out, encoding="utf-8") as drawing:
+            self.assertGreater(drawing.read().count("<circle"), 100)
 
     def greys(self, picture, part):
         left, top, right, bottom = part

@@ -157,6 +157,7 @@ struct gz_window_part {
 	ROW(gaze_panel)    /* the panel of the gaze */ \
 	ROW(latency)       /* from gaze to light on the display; V-sync */ \
 	ROW(files)         /* opens and saves */ \
+	ROW(print)         /* writes stipples and hatches for print */ \
 	ROW(mesh_export)   /* writes the surfaces shown as a mesh */ \
 	ROW(series)        /* asks which of several series is to be shown */ \
 	ROW(notices)       /* shows messages */ \

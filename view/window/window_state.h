@@ -68,6 +68,7 @@ struct gz_window {
 	struct gz_window_notices *notices_state;
 	struct gz_window_objects *objects;
 	struct gz_overlay *overlay;
+	struct gz_window_print *print;
 	struct gz_window_refine *refine;
 	struct gz_window_replay *replay;
 	struct gz_window_series *series;
