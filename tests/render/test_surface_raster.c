@@ -712,6 +712,59 @@ static void points_on_rays_are_drawn_at_their_pixels(void **state)
 	}
 }
 
+static void random_place(uint32_t *seed, double size, double out[3])
+{
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = size * (field_random(seed) - 0.5);
+}
+
+/* No box is left out of which a point is in the rectangle, and most others are. */
+static void boxes_are_left_out_only_if_nothing_of_them_shows(void **state)
+{
+	(void)state;
+	const struct gz_raster_box all = { { -60, -60, -60 }, { 60, 60, 60 } };
+	uint32_t seed = 3;
+	int out = 0, in = 0;
+	for (int i = 0; i < 2000; i++) {
+		struct stage stage = new_stage();
+		struct gz_ray_frame rays;
+		struct gz_raster_view view;
+		double middle[3], size[3];
+		const double from[2] = { 60 * field_random(&seed), 40 * field_random(&seed) };
+		const double to[2] = { from[0] + 30, from[1] + 20 };
+		bool any = false;
+		stage.camera.projection = (enum gz_projection)(i % 2);
+		assert_int_equal(gz_camera_rays(&stage.camera, WIDTH, HEIGHT, &rays), GZ_OK);
+		assert_true(gz_raster_view_make(&rays, 60, &all, &view));
+		random_place(&seed, 100, middle);
+		random_place(&seed, 40, size);
+		struct gz_raster_box box;
+		for (int axis = 0; axis < 3; axis++) {
+			box.least[axis] = middle[axis] - fabs(size[axis]) / 2;
+			box.greatest[axis] = middle[axis] + fabs(size[axis]) / 2;
+		}
+		for (int k = 0; k < 100; k++) {
+			double place[3], at[4];
+			random_place(&seed, 1, place);
+			for (int axis = 0; axis < 3; axis++)
+				place[axis] = middle[axis] + place[axis] * fabs(size[axis]);
+			for (int row = 0; row < 4; row++)
+				at[row] = (double)view.rows[row][0] * place[0] +
+					  (double)view.rows[row][1] * place[1] +
+					  (double)view.rows[row][2] * place[2] +
+					  (double)view.rows[row][3];
+			any = any || (at[3] > 0 && fabs(at[2]) < at[3] && at[0] > from[0] * at[3] &&
+				      at[0] < to[0] * at[3] && at[1] > from[1] * at[3] &&
+				      at[1] < to[1] * at[3]);
+		}
+		const bool shows = gz_raster_view_shows(&view, &box, from, to);
+		assert_true(shows || !any);
+		in += any;
+		out += !shows;
+	}
+	assert_true(in > 100 && out > 1000);
+}
+
 static void unknown_backends_are_refused_with_one_line(void **state)
 {
 	(void)state;
@@ -757,6 +810,7 @@ TEST_SUITE(surface_raster)
 		cmocka_unit_test(drawer_of_gl_finds_surfaces_in_voxels_and_takes_triangles),
 		cmocka_unit_test(drawer_of_gl_casts_the_hits_of_the_one_of_cpu),
 		cmocka_unit_test(points_on_rays_are_drawn_at_their_pixels),
+		cmocka_unit_test(boxes_are_left_out_only_if_nothing_of_them_shows),
 		cmocka_unit_test(unknown_backends_are_refused_with_one_line),
 		cmocka_unit_test(shaders_of_surfaces_are_valid_for_the_reference_compiler),
 	};

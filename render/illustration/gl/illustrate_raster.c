@@ -51,6 +51,7 @@ struct gz_illustrate_raster {
 struct illustrate_rastering {
 	struct gz_illustrate_raster *raster;
 	const struct gz_illustrate_shot *shot;
+	struct gz_raster_view view;
 	bool any; /* something is in view */
 };
 
@@ -227,10 +228,9 @@ static enum gz_result fill_numbers(struct illustrate_rastering *rastering,
 	struct gz_illustrate_raster *raster = rastering->raster;
 	const double world_mm = raster->scene.meshes.world_mm;
 	const struct gz_raster_box box = illustrated_box(raster);
-	struct gz_raster_view view = { 0 };
 	struct gz_illustrate_block block;
-	rastering->any = gz_raster_view_make(rays, world_mm, &box, &view);
-	gz_illustrate_block_fill(&raster->frame, rays, world_mm, &view, &block);
+	rastering->any = gz_raster_view_make(rays, world_mm, &box, &rastering->view);
+	gz_illustrate_block_fill(&raster->frame, rays, world_mm, &rastering->view, &block);
 	gz_gl_buffer_reserve(&raster->block, sizeof block, GL_STREAM_DRAW);
 	glBindBuffer(GL_UNIFORM_BUFFER, raster->block.name);
 	glBufferSubData(GL_UNIFORM_BUFFER, 0, sizeof block, &block);
@@ -247,13 +247,16 @@ static void set_illustrate_clipping(bool on)
 			glDisable(GL_CLIP_DISTANCE0 + i);
 }
 
-/* Draw the meshes of a layer of surfaces. The last one has what is opaque alone. */
-static void draw_illustrated(const struct gz_illustrate_raster *raster, int layer)
+/* Draw the meshes of a layer of surfaces on a lattice. The last one has what is opaque alone. */
+static void draw_illustrated(const struct illustrate_rastering *rastering, int layer,
+			     const struct gz_raster_layer *lattice)
 {
+	const struct gz_illustrate_raster *raster = rastering->raster;
 	const bool opaque_alone = layer > 0 && layer + 1 == raster->picture.layers;
 	for (size_t i = 0; i < raster->meshes.count; i++) {
 		const struct gz_illustrate_mesh *mesh = &raster->scene.listed[i];
-		if (!raster->meshes.items[i].vertices || (opaque_alone && mesh->transparent))
+		if ((opaque_alone && mesh->transparent) ||
+		    !gz_raster_mesh_in_view(&raster->meshes.items[i], &rastering->view, lattice))
 			continue;
 		glUniform3i(GZ_ILLUSTRATE_OBJECT, (GLint)mesh->id, (GLint)mesh->look,
 			    mesh->transparent);
@@ -284,7 +287,7 @@ static void find_on_lattice(const struct illustrate_rastering *rastering, int la
 	glUniform2f(GZ_ILLUSTRATE_POINTS, (float)lattice->points[0], (float)lattice->points[1]);
 	glUniform1i(GZ_ILLUSTRATE_BEHIND, layer > 0);
 	set_illustrate_clipping(raster->frame.clipped);
-	draw_illustrated(raster, layer);
+	draw_illustrated(rastering, layer, lattice);
 	set_illustrate_clipping(false);
 	glBindTexture(GL_TEXTURE_2D, 0);
 }

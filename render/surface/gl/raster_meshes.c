@@ -5,6 +5,8 @@
 
 #include <GL/glew.h>
 
+#include "render/mesh/mesh_read.h"
+
 #define GZ_LOG_MODULE "isosurface"
 
 enum { POSITIONS, BESIDE, TRIANGLES, BUFFERS };
@@ -63,20 +65,21 @@ static void upload_mesh(struct gz_raster_mesh *item, const struct gz_mesh *mesh,
 	item->own_corners = (int)(3 * (mesh->triangle_count - mesh->shared_count));
 }
 
-/* The box around all vertices. Those of no triangle, which files may have, count too. */
-static struct gz_raster_box find_box(const struct gz_surface_meshes *listed)
+/* The box around the vertices of a mesh. Those of no triangle, which files may have, count too. */
+static struct gz_raster_box find_box(const struct gz_mesh *mesh)
 {
 	struct gz_raster_box box = { { INFINITY, INFINITY, INFINITY },
 				     { -INFINITY, -INFINITY, -INFINITY } };
-	for (size_t i = 0; i < listed->count; i++)
-		for (size_t k = 0; k < listed->shown[i].vertex_count; k++)
-			for (int axis = 0; axis < 3; axis++) {
-				const double at = (double)listed->shown[i].positions[k][axis];
-				box.least[axis] = at < box.least[axis] ? at : box.least[axis];
-				box.greatest[axis] =
-					at > box.greatest[axis] ? at : box.greatest[axis];
-			}
+	gz_mesh_bound(mesh, box.least, box.greatest);
 	return box;
+}
+
+static void join_box(const struct gz_raster_box *more, struct gz_raster_box *box)
+{
+	for (int axis = 0; axis < 3; axis++) {
+		box->least[axis] = fmin(box->least[axis], more->least[axis]);
+		box->greatest[axis] = fmax(box->greatest[axis], more->greatest[axis]);
+	}
 }
 
 static enum gz_result check_room(const struct gz_gl_device *device,
@@ -114,6 +117,7 @@ enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
 	meshes->count = listed->count;
 	for (size_t i = 0; i < listed->count; i++) {
 		meshes->items[i].id = listed->items[i].object.id;
+		meshes->items[i].box = find_box(&listed->shown[i]);
 		upload_mesh(&meshes->items[i], &listed->shown[i], vertices,
 			    vertices->data ? vertices->data[i] : listed->shown[i].normals);
 	}
@@ -125,7 +129,9 @@ enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
 		gz_raster_meshes_free(meshes);
 		return result;
 	}
-	meshes->box = find_box(listed);
+	meshes->box = meshes->items[0].box;
+	for (size_t i = 1; i < meshes->count; i++)
+		join_box(&meshes->items[i].box, &meshes->box);
 	meshes->serial++;
 	meshes->uploaded = true;
 	return GZ_OK;
@@ -156,6 +162,17 @@ static void draw_shared(const struct gz_raster_mesh *mesh)
 	glDisable(GL_CULL_FACE);
 }
 
+bool gz_raster_mesh_in_view(const struct gz_raster_mesh *mesh, const struct gz_raster_view *view,
+			    const struct gz_raster_layer *lattice)
+{
+	double from[2], to[2];
+	for (int axis = 0; axis < 2; axis++) {
+		from[axis] = lattice->from[axis] - lattice->spacing;
+		to[axis] = lattice->from[axis] + (double)lattice->points[axis] * lattice->spacing;
+	}
+	return mesh->vertices && gz_raster_view_shows(view, &mesh->box, from, to);
+}
+
 void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh)
 {
 	glBindVertexArray(mesh->vertices);
@@ -166,12 +183,14 @@ void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh)
 void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
 				const struct gz_surface_meshes *listed,
 				const struct gz_surface_look *look,
+				const struct gz_raster_view *view,
+				const struct gz_raster_layer *lattice,
 				struct gz_raster_locations locations)
 {
 	for (size_t i = 0; i < meshes->count; i++) {
 		const struct gz_raster_mesh *mesh = &meshes->items[i];
 		float colour[3];
-		if (!mesh->vertices)
+		if (!gz_raster_mesh_in_view(mesh, view, lattice))
 			continue;
 		gz_surface_colour(&listed->items[i], look, colour);
 		glUniform1ui(locations.id, mesh->id);

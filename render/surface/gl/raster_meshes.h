@@ -12,6 +12,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/layers/raster_layers.h"
 #include "render/opengl/gl_device.h"
 #include "render/surface/gl/raster_view.h"
 #include "render/surface/shared/surface_frame.h"
@@ -38,11 +39,12 @@ struct gz_raster_vertices {
 
 /** One mesh; OpenGL's names. */
 struct gz_raster_mesh {
-	unsigned vertices;   /**< vertex array; 0: the mesh has no triangles */
-	unsigned buffers[3]; /**< positions, what is beside them, triangles */
-	int corners;         /**< three a triangle */
-	int own_corners;     /**< of triangles that no neighbour has too; they come first */
-	uint32_t id;         /**< of the object */
+	unsigned vertices;        /**< vertex array; 0: the mesh has no triangles */
+	unsigned buffers[3];      /**< positions, what is beside them, triangles */
+	int corners;              /**< three a triangle */
+	int own_corners;          /**< of triangles that no neighbour has too; they come first */
+	uint32_t id;              /**< of the object */
+	struct gz_raster_box box; /**< around its vertices */
 };
 
 /** All of them. Zero-initialised is empty. */
@@ -75,14 +77,20 @@ struct gz_raster_locations {
 	int id, colour;
 };
 
+/** Whether a mesh has triangles that may lie on a lattice. */
+bool gz_raster_mesh_in_view(const struct gz_raster_mesh *mesh, const struct gz_raster_view *view,
+			    const struct gz_raster_layer *lattice);
+
 /** Draw what an eye sees of a mesh that has triangles: those that two neighbours share only from
  * the front, because both lie at the same place. */
 void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh);
 
-/** Draw what an eye sees of all meshes. Sets each object's id and colour. */
+/** Draw what an eye sees of all meshes on a lattice. Sets each object's id and colour. */
 void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
 				const struct gz_surface_meshes *listed,
 				const struct gz_surface_look *look,
+				const struct gz_raster_view *view,
+				const struct gz_raster_layer *lattice,
 				struct gz_raster_locations locations);
 
 /** Delete and forget them. */

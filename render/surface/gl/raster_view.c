@@ -86,6 +86,43 @@ bool gz_raster_view_make(const struct gz_ray_frame *rays, double world_mm,
 	return true;
 }
 
+/* Sides of a rectangle of the picture, and of its depths. */
+enum { SIDES = 6 };
+
+/* How far a place lies within each side, times w: what is negative lies outside. */
+static void find_insides(const struct gz_raster_view *view, const double place[3],
+			 const double from[2], const double to[2], double out_insides[SIDES])
+{
+	double at[4];
+	for (int row = 0; row < 4; row++)
+		at[row] = (double)view->rows[row][0] * place[0] +
+			  (double)view->rows[row][1] * place[1] +
+			  (double)view->rows[row][2] * place[2] + (double)view->rows[row][3];
+	for (int axis = 0; axis < 2; axis++) {
+		out_insides[2 * axis] = at[axis] - from[axis] * at[3];
+		out_insides[2 * axis + 1] = to[axis] * at[3] - at[axis];
+	}
+	out_insides[4] = at[2] + at[3];
+	out_insides[5] = at[3] - at[2];
+}
+
+bool gz_raster_view_shows(const struct gz_raster_view *view, const struct gz_raster_box *box,
+			  const double from[2], const double to[2])
+{
+	bool is_beyond[SIDES] = { true, true, true, true, true, true };
+	for (int i = 0; i < 8; i++) {
+		double place[3], insides[SIDES];
+		corner_of(box, i, place);
+		find_insides(view, place, from, to, insides);
+		for (int side = 0; side < SIDES; side++)
+			is_beyond[side] = is_beyond[side] && insides[side] < 0;
+	}
+	bool shows = true;
+	for (int side = 0; side < SIDES; side++)
+		shows = shows && !is_beyond[side];
+	return shows;
+}
+
 struct gz_raster_shadow gz_raster_shadow_make(const float towards[3],
 					      const struct gz_raster_box *box, int edge)
 {

@@ -277,6 +277,7 @@ static void draw_raster_layer(const struct rastering *rastering, int index)
 		set_clipping(rastering->frame.clipped);
 		gz_raster_meshes_draw_seen(
 			&raster->meshes, &raster->surfaces, &rastering->shot->rays->surface,
+			&rastering->view, layer,
 			(struct gz_raster_locations) { GZ_RASTER_ID, GZ_RASTER_COLOUR });
 		set_clipping(false);
 	}
