@@ -69,6 +69,7 @@ static struct hatch_spot find_spot(const struct hatch_choice *choice,
 	struct hatch_spot found;
 	found.seen =
 		gz_stipple_project(&choice->projector, node->place, node->normal, &found.spot) &&
+		gz_stipple_spot_near(&choice->projector, &found.spot) &&
 		gz_stipple_spot_seen(&choice->projector, node->normal, &found.spot);
 	return found;
 }

@@ -74,15 +74,34 @@ enum gz_result gz_illustrate_drawing_begin(struct gz_illustrate_drawing *drawing
 	drawing->width = plan->width;
 	drawing->height = plan->height;
 	drawing->discs.count = drawing->lines.count = 0;
-	for (size_t i = 0; i < pixels; i++)
-		drawing->before[i] = drawing->outlines[i] = 1;
+	drawing->begun = false;
 	return GZ_OK;
 }
 
-/* Find the tone of a layer's marks, and go on to what is behind it. */
-static void take_layer(struct gz_illustrate_drawing *drawing, const struct gz_drawn_layer *layer)
+/* Before the first of several layers the paper is white. */
+static void begin_layers(struct gz_illustrate_drawing *drawing)
 {
 	const size_t pixels = (size_t)drawing->width * (size_t)drawing->height;
+	for (size_t i = 0; i < pixels && !drawing->begun; i++)
+		drawing->before[i] = drawing->outlines[i] = 1;
+	drawing->begun = true;
+	drawing->shown_lines = drawing->outlines;
+}
+
+/* Find the tone of a layer's marks, and go on to what is behind it. That of the only layer is its
+ * brightness. */
+static struct gz_plane take_layer(struct gz_illustrate_drawing *drawing,
+				  const struct gz_drawn_layer *layer)
+{
+	const size_t pixels = (size_t)drawing->width * (size_t)drawing->height;
+	if (layer->alone) {
+		drawing->shown_lines = drawing->layer_lines;
+		return (struct gz_plane) { .kind = GZ_PLANE_VALUE,
+					   .width = drawing->width,
+					   .height = drawing->height,
+					   .words = (uint32_t *)layer->brightness };
+	}
+	begin_layers(drawing);
 	for (size_t i = 0; i < pixels; i++) {
 		const float before = drawing->before[i];
 		const float tone = before > 0 ? layer->brightness[i] / before : 1;
@@ -91,6 +110,7 @@ static void take_layer(struct gz_illustrate_drawing *drawing, const struct gz_dr
 	}
 	for (size_t i = 0; i < pixels; i++)
 		drawing->outlines[i] -= 1 - drawing->layer_lines[i];
+	return drawing->tone;
 }
 
 static enum gz_result choose_marks(struct gz_illustrate_drawing *drawing,
@@ -116,12 +136,12 @@ enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
 	const double size_px =
 		drawing->kind == GZ_DRAWING_STIPPLES ? drawing->pen_px / 2 : drawing->pen_px;
 	enum gz_result result = GZ_OK;
-	take_layer(drawing, layer);
+	const struct gz_plane tone = take_layer(drawing, layer); /* whose words are another's */
 	for (size_t i = 0; i < scene->count && result == GZ_OK; i++) {
 		const struct gz_stipple_view view = {
 			.rays = &drawing->rays,
 			.world_per_mm = 1,
-			.tone = &drawing->tone,
+			.tone = &tone,
 			.depth = layer->depth,
 			.ids = layer->ids,
 			.id = scene->meshes.items[i].object.id,
@@ -145,7 +165,7 @@ static void write_rows(void *user, size_t part, int worker)
 	for (int y = first; y < first + PART_ROWS && y < drawing->height; y++) {
 		const size_t from = (size_t)y * (size_t)drawing->width;
 		const uint8_t *ink = drawing->sheet.ink + (size_t)y * drawing->sheet.stride;
-		const float *outlines = drawing->outlines + from;
+		const float *outlines = drawing->shown_lines + from;
 		uint32_t *pixels = gz_image_words(image) + from;
 		for (int x = 0; x < drawing->width; x++) {
 			const uint32_t paper = 255U - ink[x];

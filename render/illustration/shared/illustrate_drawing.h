@@ -9,6 +9,7 @@
 #ifndef GZ_RENDER_ILLUSTRATION_SHARED_ILLUSTRATE_DRAWING_H
 #define GZ_RENDER_ILLUSTRATION_SHARED_ILLUSTRATE_DRAWING_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/log.h"
@@ -32,11 +33,13 @@ struct gz_illustrate_drawing {
 	struct gz_stipple_discs discs; /**< of GZ_DRAWING_STIPPLES */
 	struct gz_hatch_lines lines;   /**< of GZ_DRAWING_HATCHES */
 	struct gz_stipple_sheet sheet;
-	struct gz_plane tone; /**< of a layer */
-	float *before;        /**< brightness of the layers before it */
-	float *outlines;      /**< brightness that the lines of all layers leave */
-	float *layer_lines;   /**< those of a layer: struct gz_shading_frame.lines_apart */
-	size_t room;          /**< pixels of these three */
+	struct gz_plane tone;     /**< of a layer of several */
+	float *before;            /**< brightness of the layers before it */
+	float *outlines;          /**< brightness that the lines of all layers leave */
+	float *layer_lines;       /**< those of a layer: struct gz_shading_frame.lines_apart */
+	size_t room;              /**< pixels of these three */
+	bool begun;               /**< there is a layer of several */
+	const float *shown_lines; /**< the lines of the picture: one of the two planes above */
 };
 
 /**
@@ -56,6 +59,7 @@ struct gz_drawn_layer {
 	/** Brightness of this layer and those before it, as far as they hide it; what is behind
 	 *  counts as white. */
 	const float *brightness;
+	bool alone; /**< the only layer of the picture */
 };
 
 /** Add the marks of a layer. Its lines are in drawing->layer_lines. @retval GZ_ERR_NO_MEM */

@@ -139,6 +139,7 @@ static enum gz_result draw_layer(const struct illustrate_composing *composing, i
 		.depth = &picture->planes[layer][GZ_ILLUSTRATE_DEPTH],
 		.ids = &picture->planes[layer][GZ_ILLUSTRATE_IDS],
 		.brightness = blended ? picture->together : map,
+		.alone = !blended,
 	};
 	return gz_illustrate_drawing_add(&picture->drawing, composing->scene, &drawn,
 					 composing->workers);

@@ -27,7 +27,7 @@ static float line_at(const struct gz_illustrate_drawing *drawing, int x, int y)
 {
 	if (x < 0 || y < 0 || x >= drawing->width || y >= drawing->height)
 		return 0;
-	const float ink = 1 - drawing->outlines[(size_t)y * (size_t)drawing->width + (size_t)x];
+	const float ink = 1 - drawing->shown_lines[(size_t)y * (size_t)drawing->width + (size_t)x];
 	return ink < FAINTEST_LINE ? 0 : fminf(ink, 1);
 }
 
