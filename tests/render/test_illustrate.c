@@ -719,6 +719,27 @@ static void drawing_has_ink_and_paper_and_lines(void **state)
 	take_down_easel(&easel);
 }
 
+/* As an object that vanishes at an isovalue, and one whose triangles have no area. */
+static void surface_without_area_has_no_marks(void **state)
+{
+	(void)state;
+	struct easel easel;
+	set_up_easel(&easel);
+	for (size_t i = 0; i < easel.meshes[0].triangle_count; i++)
+		easel.meshes[0].triangles[i][1] = easel.meshes[0].triangles[i][0];
+	for (int i = 0; i < 2; i++) {
+		for (int drawing = GZ_DRAWING_STIPPLES; drawing <= GZ_DRAWING_HATCHES; drawing++) {
+			easel.look.drawing = drawing;
+			draw_easel(&easel, 2);
+			for (int pixel = 0; pixel < PIXELS; pixel++)
+				assert_int_equal(grey_at(&easel, pixel % WIDTH, pixel / WIDTH),
+						 255);
+		}
+		easel.meshes[0].triangle_count = easel.meshes[0].vertex_count = 0;
+	}
+	take_down_easel(&easel);
+}
+
 static void parameter_alone_is_grey(void **state)
 {
 	(void)state;
@@ -755,6 +776,7 @@ TEST_SUITE(illustrate)
 		cmocka_unit_test(drawings_are_as_dark_as_the_map),
 		cmocka_unit_test(points_of_all_layers_together_have_the_tone),
 		cmocka_unit_test(drawing_has_ink_and_paper_and_lines),
+		cmocka_unit_test(surface_without_area_has_no_marks),
 		cmocka_unit_test(parameter_alone_is_grey),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
