@@ -20,8 +20,7 @@ enum { EXIT_SIGNAL = 128 };
 static enum gz_result list_trials(const struct gz_view_options *options, const struct gz_log *log)
 {
 	struct gz_sitting *sitting;
-	const enum gz_result r =
-		gz_sitting_open(&options->sitting, false, GAZECAST_VERSION, log, &sitting);
+	const enum gz_result r = gz_sitting_open(&options->sitting, NULL, log, &sitting);
 	if (r != GZ_OK)
 		return r;
 	gz_sitting_print(sitting, stdout);

@@ -48,7 +48,7 @@ static void get_up(struct desk *desk)
 	free_experiment(&desk->made);
 }
 
-static enum gz_result open_answers(struct desk *desk, bool resume)
+static enum gz_result open_answers_with(struct desk *desk, bool resume, const char *gaze_source)
 {
 	const struct gz_answers_request request = {
 		.place = desk->folder,
@@ -56,9 +56,15 @@ static enum gz_result open_answers(struct desk *desk, bool resume)
 		.session = "1",
 		.resume = resume,
 		.version = "1.2",
+		.gaze_source = gaze_source,
 	};
 	return gz_answers_open(&desk->made.experiment, &desk->made.sequence, &request,
 			       &captured.log, &desk->answers);
+}
+
+static enum gz_result open_answers(struct desk *desk, bool resume)
+{
+	return open_answers_with(desk, resume, "daemon");
 }
 
 static void answer(struct desk *desk, size_t index)
@@ -79,7 +85,14 @@ static void answer(struct desk *desk, size_t index)
 		.frame_ms = 16.65,
 		.gaze_loss = NAN,
 	};
-	assert_int_equal(gz_answers_write(desk->answers, &result, 4 * GZ_NS_PER_S), GZ_OK);
+	const struct gz_trial_equipment equipment = {
+		.tracker = "spectrum",
+		.tracker_serial = "TPSP1",
+		.backend = "cpu",
+		.display = { { 1920, 1080 }, { 527.04F, 296.46F }, 650 },
+	};
+	assert_int_equal(gz_answers_write(desk->answers, &result, 4 * GZ_NS_PER_S, &equipment),
+			 GZ_OK);
 }
 
 static char *content_of(const char *path)
@@ -142,6 +155,14 @@ static void rows_have_what_was_shown_and_answered(void **state)
 		{ "dropped_frames", "2" },
 		{ "median_frame_ms", "16.6" },
 		{ "gaze_loss", "n/a" },
+		{ "gaze_source", "daemon" },
+		{ "tracker", "spectrum TPSP1" },
+		{ "display_px", "1920x1080" },
+		{ "display_mm", "527.0x296.5" },
+		{ "distance_mm", "650.0" },
+		{ "backend", "cpu" },
+		{ "gazeview", "1.2" },
+		{ "gazed", "n/a" },
 		{ "participant", "07" },
 		{ "session", "1" },
 		{ "run", "1" },
@@ -235,6 +256,21 @@ static void resumed_file_continues_after_its_last_trial(void **state)
 	get_up(&desk);
 }
 
+static void answers_are_not_continued_with_another_source_of_the_gaze(void **state)
+{
+	(void)state;
+	struct desk desk;
+	sit_down(&desk);
+	assert_int_equal(open_answers(&desk, false), GZ_OK);
+	answer(&desk, 0);
+	gz_answers_close(&desk.answers);
+	assert_int_equal(open_answers_with(&desk, true, "fixed"), GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, ":2: gaze_source is daemon, but this experiment has "
+					      "fixed; continue with"));
+	assert_int_equal(open_answers(&desk, true), GZ_OK);
+	get_up(&desk);
+}
+
 static void incomplete_row_is_repeated(void **state)
 {
 	(void)state;
@@ -266,7 +302,7 @@ static void answers_of_another_order_cannot_be_resumed(void **state)
 	desk.made.experiment.params.seed = 2;
 	assert_int_equal(open_answers(&desk, true), GZ_ERR_FORMAT);
 	assert_non_null(strstr(captured.last, ":2: seed is 1, but this experiment has 2; continue "
-					      "with the experiment, seed and session"));
+					      "with the experiment, seed, session and --gaze"));
 	desk.made.experiment.params.seed = 1;
 	desk.made.experiment.fingerprint++;
 	assert_int_equal(open_answers(&desk, true), GZ_ERR_FORMAT);
@@ -334,7 +370,10 @@ static void missing_folder_is_refused(void **state)
 	(void)state;
 	struct desk desk;
 	sit_down(&desk);
-	const struct gz_answers_request request = { "/nowhere/at/all", "07", "", false, "1" };
+	const struct gz_answers_request request = { .place = "/nowhere/at/all",
+						    .participant = "07",
+						    .session = "",
+						    .gaze_source = "mouse" };
 	assert_int_equal(gz_answers_open(&desk.made.experiment, &desk.made.sequence, &request,
 					 &captured.log, &desk.answers),
 			 GZ_ERR_IO);
@@ -361,6 +400,7 @@ TEST_SUITE(answers)
 		cmocka_unit_test(every_column_is_described_beside_the_answers),
 		cmocka_unit_test(existing_file_is_not_changed),
 		cmocka_unit_test(resumed_file_continues_after_its_last_trial),
+		cmocka_unit_test(answers_are_not_continued_with_another_source_of_the_gaze),
 		cmocka_unit_test(incomplete_row_is_repeated),
 		cmocka_unit_test(answers_of_another_order_cannot_be_resumed),
 		cmocka_unit_test(other_files_are_refused),

@@ -420,6 +420,45 @@ static void required_gaze_extends_the_cross(void **state)
 	end(&stage);
 }
 
+static void trial_starts_again_after_too_long_without_required_gaze(void **state)
+{
+	(void)state;
+	struct stage stage;
+	struct gz_run_screen screen;
+	begin(&stage, ONE "gaze = required\ngaze_lost_s = 0.1\n[trial t]\n");
+	while (stage.run.phase != GZ_RUN_INTERVAL)
+		frame(&stage);
+	stage.no_gaze = true;
+	frames(&stage, 5); /* a blink */
+	assert_int_equal(stage.run.phase, GZ_RUN_INTERVAL);
+	stage.no_gaze = false;
+	frame(&stage);
+	stage.no_gaze = true;
+	assert_int_equal(next_phase(&stage), GZ_RUN_PREPARE);
+	assert_non_null(strstr(stage.marks, "trial 1 interrupted without gaze"));
+	frames(&stage, 160);
+	gz_run_screen(&stage.run, &screen);
+	assert_int_equal(screen.phase, GZ_RUN_FIXATION);
+	assert_true(screen.gaze_missing);
+	stage.no_gaze = false;
+	watch(&stage);
+	press(&stage, '1');
+	assert_int_equal(stage.last.restarts, 1);
+	assert_true(stage.last.gaze_loss == 0);
+	end(&stage);
+}
+
+static void optional_gaze_may_be_missing(void **state)
+{
+	(void)state;
+	struct stage stage;
+	begin(&stage, ONE "gaze_lost_s = 0.1\n[trial t]\n");
+	stage.no_gaze = true;
+	watch(&stage);
+	assert_int_equal(stage.run.trial.restarts, 0);
+	end(&stage);
+}
+
 static void phases_of_zero_length_are_skipped(void **state)
 {
 	(void)state;
@@ -469,6 +508,8 @@ TEST_SUITE(run)
 		cmocka_unit_test(resumed_run_starts_at_the_first_unanswered_trial),
 		cmocka_unit_test(dropped_frames_and_lost_gaze_are_counted_in_intervals_only),
 		cmocka_unit_test(required_gaze_extends_the_cross),
+		cmocka_unit_test(trial_starts_again_after_too_long_without_required_gaze),
+		cmocka_unit_test(optional_gaze_may_be_missing),
 		cmocka_unit_test(phases_of_zero_length_are_skipped),
 		cmocka_unit_test(answer_that_cannot_be_stored_ends_the_run),
 	};

@@ -110,6 +110,9 @@ class Experiment(WindowCase):
                 self.assertGreater(float(row["interval_%s_duration" % interval]), 0.15)
             self.assertGreater(int(row["frames"]), 0)
             self.assertEqual(row["gaze_loss"], "n/a")
+            self.assertEqual((row["gaze_source"], row["tracker"]), ("fixed", "n/a"))
+            self.assertEqual(row["display_px"], "%dx%d" % SCREEN)
+            self.assertIn(row["backend"], ("cpu", "gl"))
         for label in ("fine", "coarse"):
             orders = [row["order"] for row in rows if row["trial_type"] == label]
             self.assertEqual(sorted(orders), ["ab", "ba"])

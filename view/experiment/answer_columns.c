@@ -269,6 +269,52 @@ PRINTER(print_host_ns)
 	snprintf(text, size, "%" PRId64, row->result->begin_ns);
 }
 
+PRINTER(print_gaze_source)
+{
+	print_text_cell(row->gaze_source, text, size);
+}
+
+PRINTER(print_tracker)
+{
+	const char *name = row->equipment->tracker, *serial = row->equipment->tracker_serial;
+	if (name && serial && serial[0])
+		snprintf(text, size, "%s %s", name, serial);
+	else
+		print_text_cell(name, text, size);
+}
+
+PRINTER(print_display_px)
+{
+	const struct gz_display *display = &row->equipment->display;
+	snprintf(text, size, "%dx%d", display->px[0], display->px[1]);
+}
+
+PRINTER(print_display_mm)
+{
+	const struct gz_display *display = &row->equipment->display;
+	snprintf(text, size, "%.1fx%.1f", display->mm[0], display->mm[1]);
+}
+
+PRINTER(print_distance)
+{
+	print_number_cell(row->equipment->display.distance_mm, "%.1f", text, size);
+}
+
+PRINTER(print_backend)
+{
+	print_text_cell(row->equipment->backend, text, size);
+}
+
+PRINTER(print_gazeview)
+{
+	print_text_cell(row->version, text, size);
+}
+
+PRINTER(print_gazed)
+{
+	print_text_cell(row->equipment->daemon_version, text, size);
+}
+
 /* clang-format off */
 const struct gz_answer_column gz_answer_columns[] = {
 	{ "onset", "Time of the trial's first screen, from the start of the run's first trial.", "s", NULL, false, print_onset },
@@ -300,6 +346,14 @@ const struct gz_answer_column gz_answer_columns[] = {
 	{ "dropped_frames", "Number of display refreshes without a new frame in the intervals.", NULL, NULL, false, print_dropped },
 	{ "median_frame_ms", "Median time between frames in the intervals.", "ms", NULL, false, print_frame_ms },
 	{ "gaze_loss", "Fraction of the intervals in which the tracker did not see the eye.", NULL, NULL, false, print_gaze_loss },
+	{ "gaze_source", "Where the gaze came from.", NULL, "daemon: a tracker, by gazed | mouse: the mouse | pointer: the mouse, by gazed | fixed: one place | log: a gaze log", true, print_gaze_source },
+	{ "tracker", "The tracker's name and serial number, as gazed has them.", NULL, NULL, false, print_tracker },
+	{ "display_px", "Size of the display.", "px", NULL, false, print_display_px },
+	{ "display_mm", "Size of the display.", "mm", NULL, false, print_display_mm },
+	{ "distance_mm", "Distance from the eyes to the display.", "mm", NULL, false, print_distance },
+	{ "backend", "What rendered the pictures.", NULL, NULL, false, print_backend },
+	{ "gazeview", "Version of gazeview.", NULL, NULL, false, print_gazeview },
+	{ "gazed", "Version of gazed.", NULL, NULL, false, print_gazed },
 	{ "restarts", "Number of times the trial was interrupted and restarted.", NULL, NULL, false, print_restarts },
 	{ "participant", "Label of the participant.", NULL, NULL, true, print_participant },
 	{ "session", "Label of the session.", NULL, NULL, true, print_session },

@@ -53,7 +53,8 @@ enum gz_result gz_answers_path(const struct gz_experiment *experiment,
 }
 
 static struct gz_answer_row answer_row_of(const struct gz_answers *answers,
-					  const struct gz_trial_result *result, int64_t start_ns)
+					  const struct gz_trial_result *result, int64_t start_ns,
+					  const struct gz_trial_equipment *equipment)
 {
 	return (struct gz_answer_row) {
 		.experiment = answers->experiment,
@@ -62,6 +63,9 @@ static struct gz_answer_row answer_row_of(const struct gz_answers *answers,
 		.run = answers->run,
 		.start_ns = start_ns,
 		.result = result,
+		.gaze_source = answers->request.gaze_source,
+		.version = answers->request.version,
+		.equipment = equipment,
 	};
 }
 
@@ -146,8 +150,8 @@ static enum gz_result refuse_line(const struct gz_answers *answers, const struct
 				  const char *what)
 {
 	gz_err(answers->log,
-	       "%s:%d: %s; continue with the experiment, seed and session it was started with, or "
-	       "start another --session",
+	       "%s:%d: %s; continue with the experiment, seed, session and --gaze it was started "
+	       "with, or start another --session",
 	       answers->path, lines->number, what);
 	return GZ_ERR_FORMAT;
 }
@@ -162,7 +166,7 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 		.index = answers->done,
 		.presentation = &answers->sequence->presentations[answers->done],
 	};
-	const struct gz_answer_row row = answer_row_of(answers, &result, 0);
+	const struct gz_answer_row row = answer_row_of(answers, &result, 0, NULL);
 	for (size_t i = 0; i < gz_answer_column_count; i++) {
 		const struct gz_answer_column *column = &gz_answer_columns[i];
 		char *cell = strsep(&line, "\t");
@@ -360,10 +364,10 @@ const char *gz_answers_file(const struct gz_answers *answers)
 }
 
 enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_trial_result *result,
-				int64_t start_ns)
+				int64_t start_ns, const struct gz_trial_equipment *equipment)
 {
 	char cell[GZ_ANSWER_CELL_SIZE];
-	const struct gz_answer_row row = answer_row_of(answers, result, start_ns);
+	const struct gz_answer_row row = answer_row_of(answers, result, start_ns, equipment);
 	struct gz_text text = { 0 };
 	for (size_t i = 0; i < gz_answer_column_count; i++) {
 		gz_answer_columns[i].print(&row, cell, sizeof cell);

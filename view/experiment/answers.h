@@ -13,6 +13,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "protocol/display.h"
 #include "view/experiment/run.h"
 
 /** Size of the label of a participant or session, with its NUL, bytes. */
@@ -24,7 +25,19 @@ struct gz_answers_request {
 	const char *participant;
 	const char *session; /**< may be empty */
 	bool resume;         /**< continue an existing file */
-	const char *version; /**< of the program, for the JSON file */
+	const char *version; /**< of the program */
+	/** Where the gaze comes from: "daemon", "mouse", "pointer", "fixed" or "log". A file is not
+	 *  continued with another one. */
+	const char *gaze_source;
+};
+
+/** What a trial was shown with. Texts are borrowed; NULL: not known. */
+struct gz_trial_equipment {
+	const char *tracker;        /**< its name, as the daemon has it */
+	const char *tracker_serial; /**< empty: it has none */
+	const char *daemon_version;
+	const char *backend;
+	struct gz_display display; /**< the pictures filled it */
 };
 
 /** A file of answers being written. */
@@ -48,8 +61,8 @@ enum gz_result gz_answers_path(const struct gz_experiment *experiment,
  * @retval GZ_ERR_BUSY       the file exists without resume, is complete, or another program is
  *                           writing it; logged
  * @retval GZ_ERR_NOT_FOUND  no file to continue; logged
- * @retval GZ_ERR_FORMAT     the file belongs to another experiment, order, participant or version;
- *                           logged with the line
+ * @retval GZ_ERR_FORMAT     the file belongs to another experiment, order, participant, version or
+ *                           source of the gaze; logged with the line
  * @retval GZ_ERR_IO, GZ_ERR_FULL  the file cannot be written, or its path is too long; logged
  * @retval GZ_ERR_NO_MEM     out of memory
  */
@@ -67,12 +80,13 @@ const char *gz_answers_file(const struct gz_answers *answers);
 /**
  * Add the row of a trial. It is on the disk when this returns.
  *
- * @param start_ns  host time that onsets are relative to
+ * @param start_ns   host time that onsets are relative to
+ * @param equipment  what it was shown with
  * @retval GZ_ERR_IO      the row could not be written; logged
  * @retval GZ_ERR_NO_MEM  out of memory
  */
 enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_trial_result *result,
-				int64_t start_ns);
+				int64_t start_ns, const struct gz_trial_equipment *equipment);
 
 /** Close the file and set the pointer to NULL. A file without rows is removed. Accepts a pointer to
  * NULL. */

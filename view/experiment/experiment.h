@@ -107,6 +107,8 @@ struct gz_experiment_params {
 	int seed;
 	int block_order; /**< enum gz_experiment_block_order */
 	int gaze;        /**< enum gz_experiment_gaze */
+	/** GZ_GAZE_REQUIRED: longest time without gaze in an interval, s; 0: any */
+	double gaze_lost_s;
 	char instructions[GZ_INI_LINE_SIZE];
 	char instructions_file[GZ_INI_LINE_SIZE];
 	char goodbye[GZ_INI_LINE_SIZE];

@@ -101,6 +101,10 @@ const struct gz_option gz_experiment_options[] = {
 		  "its place" },
 	{ "gaze", GZ_OPTION_CHOICE, AT(gaze), .choices = gaze_names, .preset = "optional",
 	  .help = "required: no interval starts without gaze from a tracker" },
+	{ "gaze_lost_s", GZ_OPTION_DOUBLE, AT(gaze_lost_s), 0, 3600, .preset = "1",
+	  .help = "gaze = required: a trial starts again if an interval has no gaze for so long, "
+		  "s; "
+		  "0: never" },
 	{ "instructions", GZ_OPTION_STRING, AT(instructions), .max = GZ_INI_LINE_SIZE, .preset = "",
 	  .help = "text shown first" },
 	{ "instructions_file", GZ_OPTION_STRING, AT(instructions_file), .max = GZ_INI_LINE_SIZE,

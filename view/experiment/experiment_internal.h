@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "view/experiment/answers.h"
 #include "view/experiment/experiment.h"
 #include "view/experiment/run.h"
 
@@ -52,6 +53,9 @@ struct gz_answer_row {
 	int64_t start_ns; /**< start of the run, host time */
 	const struct gz_trial_result
 		*result; /**< identity columns use index and presentation only */
+	const char *gaze_source;
+	const char *version;                        /**< of gazeview */
+	const struct gz_trial_equipment *equipment; /**< identity columns do not use it */
 };
 
 /** One column. */

@@ -273,10 +273,36 @@ static bool advance_phase(struct gz_run *run, const struct gz_run_input *input)
 	}
 }
 
+/* Whether an interval has been without the gaze that it requires for too long. */
+static bool interval_lost_gaze(struct gz_run *run, const struct gz_run_input *input)
+{
+	const struct gz_experiment_params *params = &run->experiment->params;
+	if (run->phase != GZ_RUN_INTERVAL || params->gaze != GZ_GAZE_REQUIRED ||
+	    params->gaze_lost_s <= 0 || input->gaze_there) {
+		run->gaze_lost_ns = 0;
+		return false;
+	}
+	if (!run->gaze_lost_ns)
+		run->gaze_lost_ns = input->now_ns;
+	return (double)(input->now_ns - run->gaze_lost_ns) >=
+	       params->gaze_lost_s * (double)GZ_NS_PER_S;
+}
+
+static void restart_trial(struct gz_run *run)
+{
+	clear_trial(run, run->trial.restarts + 1);
+	enter_phase(run, GZ_RUN_PREPARE);
+}
+
 bool gz_run_step(struct gz_run *run, const struct gz_run_input *input)
 {
 	if (input->gaze_there)
 		run->gaze_missing_ns = 0;
+	if (interval_lost_gaze(run, input)) {
+		mark(run, input->now_ns, "trial %zu interrupted without gaze", run->index + 1);
+		restart_trial(run);
+		return true;
+	}
 	if (run->phase == GZ_RUN_PREPARE) {
 		if (!input->ready)
 			return false;
@@ -399,8 +425,7 @@ static void stay_after_all(struct gz_run *run, int64_t now_ns)
 		run->index++;
 		begin_trial(run, now_ns);
 	} else {
-		clear_trial(run, run->trial.restarts + 1);
-		enter_phase(run, GZ_RUN_PREPARE);
+		restart_trial(run);
 	}
 }
 

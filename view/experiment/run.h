@@ -5,7 +5,8 @@
  * with gz_run_shown() when it appeared, passes keys, and calls gz_run_step() each frame. Events
  * come out as marks, and each trial as a result.
  *
- * A trial interrupted by Escape is restarted when the participant continues.
+ * A trial interrupted by Escape is restarted when the participant continues, and one that requires
+ * gaze when there has been none for too long.
  */
 #ifndef GZ_VIEW_EXPERIMENT_RUN_H
 #define GZ_VIEW_EXPERIMENT_RUN_H
@@ -85,6 +86,7 @@ struct gz_run {
 	enum gz_run_phase left; /* LEAVING: the interrupted phase */
 	bool gaze_missing;      /* FIXATION is extended because gaze is missing */
 	int64_t gaze_missing_ns;
+	int64_t gaze_lost_ns; /* INTERVAL: since when there is no gaze; 0: there is */
 	bool begun, complete;
 	int64_t frame_ns; /* the last swap in an interval; 0: none */
 	struct gz_trial_frames frames;

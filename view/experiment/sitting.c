@@ -52,7 +52,8 @@ enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options
 	return GZ_OK;
 }
 
-static enum gz_result open_answers(struct gz_sitting *sitting, const char *version,
+static enum gz_result open_answers(struct gz_sitting *sitting,
+				   const struct gz_sitting_program *program,
 				   const struct gz_log *log)
 {
 	const struct gz_sitting_options *options = sitting->options;
@@ -61,14 +62,15 @@ static enum gz_result open_answers(struct gz_sitting *sitting, const char *versi
 		.participant = options->participant,
 		.session = options->session,
 		.resume = options->resume,
-		.version = version,
+		.version = program->version,
+		.gaze_source = program->gaze_source,
 	};
 	return gz_answers_open(&sitting->experiment, &sitting->sequence, &request, log,
 			       &sitting->answers);
 }
 
-enum gz_result gz_sitting_open(const struct gz_sitting_options *options, bool with_answers,
-			       const char *version, const struct gz_log *log,
+enum gz_result gz_sitting_open(const struct gz_sitting_options *options,
+			       const struct gz_sitting_program *program, const struct gz_log *log,
 			       struct gz_sitting **out_sitting)
 {
 	struct gz_sitting *sitting = calloc(1, sizeof *sitting);
@@ -81,8 +83,8 @@ enum gz_result gz_sitting_open(const struct gz_sitting_options *options, bool wi
 	if (r == GZ_OK)
 		r = gz_sequence_make(&sitting->experiment, options->participant, options->session,
 				     log, &sitting->sequence);
-	if (r == GZ_OK && with_answers)
-		r = open_answers(sitting, version, log);
+	if (r == GZ_OK && program)
+		r = open_answers(sitting, program, log);
 	if (r != GZ_OK) {
 		gz_sitting_close(&sitting);
 		return r;

@@ -31,6 +31,12 @@ extern const size_t gz_sitting_option_count;
 enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options,
 					const struct gz_log *log);
 
+/** The program that runs a sitting, for its answers. Texts are borrowed and outlive it. */
+struct gz_sitting_program {
+	const char *version;
+	const char *gaze_source; /**< see struct gz_answers_request */
+};
+
 /** A sitting. */
 struct gz_sitting {
 	const struct gz_sitting_options *options;
@@ -43,15 +49,14 @@ struct gz_sitting {
  * Read the experiment, check everything it names, and draw its order.
  *
  * @param options       borrowed, outlives the sitting
- * @param with_answers  create the file of answers, or continue it
- * @param version       of the program; borrowed, outlives the sitting
+ * @param program       create the file of answers, or continue it; NULL: do not
  * @param log           borrowed, outlives the sitting
  * @param[out] out_sitting  the caller closes it with gz_sitting_close()
  * @return the results of gz_experiment_load(), gz_experiment_check(), gz_sequence_make() and
  *         gz_answers_open(); logged
  */
-enum gz_result gz_sitting_open(const struct gz_sitting_options *options, bool with_answers,
-			       const char *version, const struct gz_log *log,
+enum gz_result gz_sitting_open(const struct gz_sitting_options *options,
+			       const struct gz_sitting_program *program, const struct gz_log *log,
 			       struct gz_sitting **out_sitting);
 
 /** Print the trials in their order, one a line, and their total time without answers and breaks. */

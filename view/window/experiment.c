@@ -39,20 +39,40 @@ static void mark_in_log(void *user, const char *label, int64_t time_ns)
 static enum gz_result write_answer(void *user, const struct gz_trial_result *result)
 {
 	const struct gz_window *window = user;
+	const struct gz_status *status =
+		window->source ? gz_gaze_source_status(window->source) : NULL;
+	const struct gz_trial_equipment equipment = {
+		.tracker = status ? status->tracker.name : NULL,
+		.tracker_serial = status ? status->tracker.serial : NULL,
+		.daemon_version = status ? status->version : NULL,
+		.backend = window->record.backend,
+		.display = window->shown_display,
+	};
 	return gz_answers_write(window->experiment->sitting->answers, result,
-				window->experiment->start_ns);
+				window->experiment->start_ns, &equipment);
+}
+
+/* What the file of answers calls the source of the gaze. */
+static const char *source_name(enum gz_gaze_kind kind)
+{
+	static const char *const names[] = {
+		[GZ_GAZE_CENTRE] = "fixed",  [GZ_GAZE_FIXED] = "fixed",
+		[GZ_GAZE_MOUSE] = "mouse",   [GZ_GAZE_POINTER] = "pointer",
+		[GZ_GAZE_LATEST] = "daemon", [GZ_GAZE_LOG] = "log",
+	};
+	return names[kind];
 }
 
 static enum gz_result check_gaze_kind(const struct gz_window *window,
 				      const struct gz_experiment *experiment)
 {
 	const enum gz_gaze_kind kind = window->options->gaze.kind;
-	const bool tracked =
-		kind == GZ_GAZE_LATEST || kind == GZ_GAZE_POINTER || kind == GZ_GAZE_LOG;
-	if (tracked || experiment->params.gaze != GZ_GAZE_REQUIRED)
+	const bool moves = kind != GZ_GAZE_CENTRE && kind != GZ_GAZE_FIXED;
+	if (moves || experiment->params.gaze != GZ_GAZE_REQUIRED)
 		return GZ_OK;
 	gz_err(window->log,
-	       "--gaze %s: %s has gaze = required; use a tracker, as with --gaze daemon",
+	       "--gaze %s: %s has gaze = required; use a tracker, as with --gaze daemon, or the "
+	       "mouse, with --gaze mouse",
 	       window->options->gaze_text, experiment->path);
 	return GZ_ERR_INVAL;
 }
@@ -98,8 +118,11 @@ static enum gz_result open_experiment(struct gz_window *window)
 	struct gz_window_experiment *state = window->experiment;
 	window->alone = &gz_window_experiment_part;
 	window->picture_hidden = true;
-	enum gz_result r =
-		gz_sitting_open(options, true, GAZECAST_VERSION, window->log, &state->sitting);
+	const struct gz_sitting_program program = {
+		.version = GAZECAST_VERSION,
+		.gaze_source = source_name(window->options->gaze.kind),
+	};
+	enum gz_result r = gz_sitting_open(options, &program, window->log, &state->sitting);
 	if (r == GZ_OK)
 		r = check_gaze_kind(window, &state->sitting->experiment);
 	if (r == GZ_OK)
@@ -336,8 +359,11 @@ static void draw_experiment_screen(struct gz_window *window, const struct gz_win
 		.text_size = params->text_size,
 	};
 	if (screen.phase == GZ_RUN_FIXATION && screen.gaze_missing)
-		gz_experiment_screen_text(&look, "The eye tracker does not see your eyes.\nSit as "
-						 "you did before; it goes on by itself.");
+		gz_experiment_screen_text(
+			&look, window->options->gaze.kind == GZ_GAZE_MOUSE
+				       ? "Move the mouse to go on."
+				       : "The eye tracker does not see your eyes.\nSit as "
+					 "you did before; it goes on by itself.");
 	else if (screen.phase == GZ_RUN_FIXATION)
 		gz_experiment_screen_cross(&look, cross_width(window));
 	else if (screen.text)
