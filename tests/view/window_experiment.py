@@ -1,6 +1,7 @@
 """gazeview --experiment in the real window: answered by keys, left by Escape, resumed."""
 
 import csv
+import ctypes
 import os
 import subprocess
 import sys
@@ -26,6 +27,27 @@ b.foveation.acuity_slope = 0.2
 repeats = %d
 order = listed
 """
+
+
+class CursorImage(ctypes.Structure):
+    """XFixesCursorImage of X11/extensions/Xfixes.h, as far as it is read."""
+    _fields_ = [("x", ctypes.c_short), ("y", ctypes.c_short), ("width", ctypes.c_ushort),
+                ("height", ctypes.c_ushort), ("xhot", ctypes.c_ushort), ("yhot", ctypes.c_ushort),
+                ("serial", ctypes.c_ulong), ("pixels", ctypes.POINTER(ctypes.c_ulong))]
+
+
+def cursor_is_seen(display):
+    """Whether any pixel of the mouse cursor on the screen is not transparent."""
+    x11, fixes = ctypes.CDLL("libX11.so.6"), ctypes.CDLL("libXfixes.so.3")
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    fixes.XFixesGetCursorImage.restype = ctypes.POINTER(CursorImage)
+    screen = ctypes.c_void_p(x11.XOpenDisplay(display.encode()))
+    base, error = ctypes.c_int(), ctypes.c_int()
+    fixes.XFixesQueryExtension(screen, ctypes.byref(base), ctypes.byref(error))
+    image = fixes.XFixesGetCursorImage(screen).contents
+    seen = any(image.pixels[i] & 0xff000000 for i in range(image.width * image.height))
+    x11.XCloseDisplay(screen)
+    return seen
 
 
 class Experiment(WindowCase):
@@ -124,6 +146,7 @@ class Experiment(WindowCase):
         text = self.until(lambda p: self.whole(p, GROUND) and
                           len({p.at(x, y) for x in range(300, 600) for y in range(300, 400)}) > 1,
                           "instructions")
+        self.assertFalse(cursor_is_seen(self.environment["DISPLAY"]))
         self.press("space")
         middle = (SCREEN[0] // 2, SCREEN[1] // 2)
         cross = self.until(lambda p: self.whole(p, GROUND) and p.at(*middle) != GROUND and

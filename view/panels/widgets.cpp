@@ -464,6 +464,12 @@ bool gz_widgets_init(GLFWwindow *window, double scale)
 	return true;
 }
 
+void gz_widgets_leave_cursor(void)
+{
+	if (ImGui::GetCurrentContext())
+		ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
+}
+
 void gz_widgets_follow_scale(GLFWwindow *window)
 {
 	const float scale = interface_scale(window);

@@ -140,6 +140,10 @@ void gz_widgets_note_key(int key);
  * until that ends are one step. */
 bool gz_widgets_in_use(void);
 
+/** From now on the mouse cursor stays as the window has it; else widgets show it in each frame.
+ * After gz_widgets_init(). */
+void gz_widgets_leave_cursor(void);
+
 /** Take the keyboard from all widgets. */
 void gz_widgets_release_keyboard(void);
 

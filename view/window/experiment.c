@@ -12,6 +12,7 @@
 #include "client/viewer_link.h"
 #include "view/experiment/experiment.h"
 #include "view/panels/experiment_screen.h"
+#include "view/panels/widgets.h"
 #include "view/window/displays.h"
 #include "view/window/gaze.h"
 #include "view/window/glfw.h"
@@ -141,6 +142,7 @@ static enum gz_result open_experiment_window(struct gz_window *window)
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
 		return GZ_OK;
+	gz_widgets_leave_cursor();
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
 	glfwSetDropCallback(window->glfw, NULL); /* files cannot be dropped */
 	glfwSetWindowAttrib(window->glfw, GLFW_AUTO_ICONIFY, GLFW_FALSE);
