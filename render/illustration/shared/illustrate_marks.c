@@ -258,7 +258,8 @@ enum gz_result gz_illustrate_marks_make(struct gz_illustrate_scene *scene,
 	struct making_marks making = { .scene = scene,
 				       .workers = workers,
 				       .in_all = points_for(shot->plan) };
-	if (!lacks_marks(scene, drawing, making.in_all))
+	/* a shot without pixels asks only what is at a place */
+	if (shot->plan->width < 1 || !lacks_marks(scene, drawing, making.in_all))
 		return GZ_OK;
 	making.areas = calloc(scene->count, sizeof *making.areas);
 	if (!making.areas)

@@ -33,6 +33,7 @@ struct gz_illustrate_marks {
  * them.
  *
  * @param scene  with the vertices of all items
+ * @param shot   one whose plan has no pixels needs none
  * @param[out] out_new  whether any were made; not written otherwise
  * @retval GZ_ERR_NO_MEM  out of memory
  */
