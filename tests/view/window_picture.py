@@ -151,7 +151,7 @@ class PictureWindow(WindowCase):
         colour = (255, 0, 51)
 
         def listed(picture):
-            return sum(picture.at(x, y) == colour for x in range(8, 60)
+            return sum(picture.at(x, y) == colour for x in range(8, 90)
                        for y in range(LINE_HEIGHT, 160))
 
         self.assertEqual(listed(self.rest()), 0)
