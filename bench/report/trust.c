@@ -53,7 +53,7 @@ static int compare_kind_times(const void *a, const void *b)
 
 double gz_noise_of(struct gz_kind_time *times, size_t count)
 {
-	double *shares = calloc(count > 0 ? count : 1, sizeof shares[0]);
+	double *shares = count > 0 ? calloc(count, sizeof shares[0]) : NULL;
 	size_t found = 0;
 	if (!shares)
 		return NAN;
