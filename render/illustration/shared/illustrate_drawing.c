@@ -99,7 +99,7 @@ static struct gz_plane take_layer(struct gz_illustrate_drawing *drawing,
 		return (struct gz_plane) { .kind = GZ_PLANE_VALUE,
 					   .width = drawing->width,
 					   .height = drawing->height,
-					   .words = (uint32_t *)layer->brightness };
+					   .words = (uint32_t *)(void *)layer->brightness };
 	}
 	begin_layers(drawing);
 	for (size_t i = 0; i < pixels; i++) {
