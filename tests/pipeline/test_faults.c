@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -202,9 +203,19 @@ static void gazed_serves_many_readers_without_a_gap(void **state)
 		reader_close(&readers[i]);
 }
 
-/* As many connections as a client might forget to close. */
+/* The daemon greets whom it has let in and closes the others. */
+static void wait_until_taken(int fd)
+{
+	struct pollfd answer = { .fd = fd, .events = POLLIN };
+	assert_int_equal(poll(&answer, 1, PATIENCE_MS), 1);
+}
+
+/* As many connections as a client might forget to close. Each turn is fewer than may wait at a
+ * socket of libzmq (ZMQ_BACKLOG, 100): one beyond that tries again only after a second, and after
+ * five seconds the first ones have used up the time of their handshake. */
 static void connect_idly(int port, int *sockets, int count)
 {
+	enum { TURN = 50 };
 	struct sockaddr_in address = { .sin_family = AF_INET,
 				       .sin_port = htons((uint16_t)port),
 				       .sin_addr = { htonl(INADDR_LOOPBACK) } };
@@ -213,6 +224,8 @@ static void connect_idly(int port, int *sockets, int count)
 		assert_true(sockets[i] >= 0);
 		assert_return_code(connect(sockets[i], (struct sockaddr *)&address, sizeof address),
 				   errno);
+		if (i % TURN == TURN - 1 || i == count - 1)
+			wait_until_taken(sockets[i]);
 	}
 }
 
