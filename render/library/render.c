@@ -195,7 +195,8 @@ static enum gz_result show_volume(struct gz_renderer *renderer, struct gz_volume
 	if (renderer->transfer_is_set)
 		scene.transfer = renderer->scene.transfer;
 	else
-		result = gz_transfer_of_volume(volume, &renderer->log, &scene.transfer);
+		result = gz_transfer_of_volume(volume, scene.settings.transfer_preset,
+					       &renderer->log, &scene.transfer);
 	if (result != GZ_OK) {
 		gz_volume_free(volume);
 		return result;
@@ -205,7 +206,7 @@ static enum gz_result show_volume(struct gz_renderer *renderer, struct gz_volume
 	scene.settings.volume_file[0] = scene.settings.transfer_file[0] = '\0';
 	scene.settings.volume_procedural = 0;
 	if (!renderer->camera_is_placed)
-		gz_camera_fit(&scene.settings.camera, volume);
+		gz_camera_fit(&scene.settings.camera, volume, NULL);
 	replace_scene(renderer, &scene);
 	renderer->from_memory = true;
 	return GZ_OK;
@@ -245,7 +246,9 @@ enum gz_result gz_renderer_set_transfer(struct gz_renderer *renderer, const char
 		result = gz_transfer_parse("transfer function", text, strlen(text), &renderer->log,
 					   &transfer);
 	else if (renderer->has_data)
-		result = gz_transfer_of_volume(&renderer->scene.volume, &renderer->log, &transfer);
+		result = gz_transfer_of_volume(&renderer->scene.volume,
+					       renderer->scene.settings.transfer_preset,
+					       &renderer->log, &transfer);
 	if (result != GZ_OK)
 		return result;
 	renderer->transfer_is_set = text != NULL;

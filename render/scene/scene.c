@@ -557,15 +557,34 @@ enum gz_result gz_scene_load_changed(const struct gz_scene_source *source,
 	return result == GZ_OK ? gz_scene_load_parts(&parts, loading, log, out_scene) : result;
 }
 
-enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, const struct gz_log *log,
-				     struct gz_transfer *out_transfer)
+enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, int choice,
+				     const struct gz_log *log, struct gz_transfer *out_transfer)
 {
 	struct gz_histogram histogram;
 	const enum gz_result result =
 		gz_histogram_count(volume, GZ_HISTOGRAM_BINS_LEAST, 0, NULL, log, &histogram);
-	if (result == GZ_OK)
-		gz_transfer_preset_make(GZ_PRESET_DEFAULT, &histogram, volume, out_transfer);
-	return result;
+	if (result != GZ_OK)
+		return result;
+	const enum gz_transfer_preset preset = choice > 0 ? (enum gz_transfer_preset)(choice - 1)
+							  : gz_transfer_preset_for(&histogram);
+	gz_transfer_preset_make(preset, &histogram, volume, out_transfer);
+	return GZ_OK;
+}
+
+/* Warn of a transfer function for other data, with which nothing is seen. */
+static void check_transfer(const struct scene_loader *loader, const struct gz_scene *scene)
+{
+	const struct gz_volume *volume = &scene->volume;
+	const double ends[2] = { volume->slope * volume->stored_min + volume->intercept,
+				 volume->slope * volume->stored_max + volume->intercept };
+	const double least = fmin(ends[0], ends[1]), greatest = fmax(ends[0], ends[1]);
+	if (!scene->transfer.has_range || volume->colour != GZ_COLOUR_NONE ||
+	    gz_transfer_shows(&scene->transfer, least, greatest))
+		return;
+	gz_warn(loader->log,
+		"%s: the transfer function shows nothing of this volume: it is for values from %g "
+		"to %g, and the data are %g to %g; edit it (E in gazeview), or leave it out",
+		loader->name, scene->transfer.range[0], scene->transfer.range[1], least, greatest);
 }
 
 enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
@@ -596,7 +615,10 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 		result = gz_scene_has_volume(&scene.settings) ? load_volume(&loader, &scene.volume)
 							      : make_empty_space(&loader, &scene);
 	if (result == GZ_OK && !given && !parts->volume_alone)
-		result = gz_transfer_of_volume(&scene.volume, log, &scene.transfer);
+		result = gz_transfer_of_volume(&scene.volume, scene.settings.transfer_preset, log,
+					       &scene.transfer);
+	if (result == GZ_OK && given && gz_scene_has_volume(&scene.settings))
+		check_transfer(&loader, &scene);
 	if (result != GZ_OK) {
 		gz_scene_free(&scene);
 		return result;

@@ -92,10 +92,14 @@ enum gz_result gz_scene_load_time_point(const struct gz_scene_time_point *which,
 					const struct gz_loading *loading, const struct gz_log *log,
 					struct gz_volume *out_volume);
 
-/** Make the transfer function of a volume that comes without one: GZ_PRESET_DEFAULT, by the
- * volume's histogram. @return what gz_histogram_count() returns; logged */
-enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, const struct gz_log *log,
-				     struct gz_transfer *out_transfer);
+/**
+ * Make the transfer function of a volume that comes without one, by its histogram.
+ *
+ * @param choice  index into gz_transfer_preset_choices: 0 is gz_transfer_preset_for()
+ * @return what gz_histogram_count() returns; logged
+ */
+enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, int choice,
+				     const struct gz_log *log, struct gz_transfer *out_transfer);
 
 /**
  * Check whether gz_scene_load_changed() would succeed, without loading the volume: the volume's

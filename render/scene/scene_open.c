@@ -12,6 +12,7 @@
 #include "render/mesh/mesh_read.h"
 #include "render/particles/particles.h"
 #include "render/scene/scene_picture.h"
+#include "render/transfer/content.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -147,11 +148,18 @@ static void view_axes(const struct gz_camera *camera, double axes[3][3])
 	}
 }
 
-void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume)
+void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume,
+		   const struct gz_clip_box *box)
 {
-	double half[3], axes[3][3], distance = 0, greatest = 0;
+	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
+	double half[3], middle[3], axes[3][3], distance = 0, greatest = 0;
+	const struct gz_clip_box *seen = box ? box : &whole;
 	const double slope = FIT_SHARE * tan(camera->fov_deg * RADIANS_PER_DEGREE / 2);
 	gz_volume_half_extent(volume, half);
+	for (int i = 0; i < 3; i++) {
+		middle[i] = (seen->least[i] + seen->greatest[i] - 1) * half[i];
+		half[i] *= seen->greatest[i] - seen->least[i];
+	}
 	view_axes(camera, axes);
 	for (int corner = 0; corner < 8; corner++) {
 		double at[3] = { 0, 0, 0 };
@@ -164,8 +172,8 @@ void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume)
 	}
 	camera->height = 2 * greatest / FIT_SHARE;
 	for (int i = 0; i < 3; i++) {
-		camera->look_at[i] = 0;
-		camera->eye[i] = -axes[2][i] * distance;
+		camera->look_at[i] = middle[i];
+		camera->eye[i] = middle[i] - axes[2][i] * distance;
 	}
 }
 
@@ -180,13 +188,19 @@ static bool same_camera_place(const struct gz_camera *a, const struct gz_camera 
 	return same;
 }
 
-/* From the front, the right and above. In an oriented volume and a mesh y points to the front. */
-static void choose_first_view(struct gz_camera *camera, const struct gz_volume *volume,
-			      bool to_front)
+/* Look at what is seen of the scene, from the front, the right and above. In an oriented volume and
+ * a mesh y points to the front. */
+static void choose_first_view(struct gz_scene *scene)
 {
+	const bool has_volume = gz_scene_has_volume(&scene->settings);
+	const bool to_front = scene->volume.oriented || !has_volume;
 	const double eye[3] = { 0.8, to_front ? 1.3 : -1.3, 0.5 };
+	struct gz_camera *camera = &scene->settings.camera;
+	struct gz_clip_box content = scene->settings.rays.clip;
 	memcpy(camera->eye, eye, sizeof eye);
-	gz_camera_fit(camera, volume);
+	if (has_volume)
+		gz_content_find(&scene->volume, &scene->transfer, &content, &content);
+	gz_camera_fit(camera, &scene->volume, &content);
 }
 
 static enum gz_result change_and_check(const struct gz_scene_request *request,
@@ -209,6 +223,8 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	if (result != GZ_OK)
 		return result;
 	const struct gz_camera preset = settings.camera;
+	/* Most volumes show surfaces, and those need light. */
+	settings.rays.shading = GZ_SHADING_GRADIENT;
 	result = change_and_check(request, &settings, log);
 	const struct gz_scene_parts parts = {
 		.name = request->path,
@@ -218,8 +234,7 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	if (result == GZ_OK)
 		result = gz_scene_load_parts(&parts, request->loading, log, out_scene);
 	if (result == GZ_OK && same_camera_place(&settings.camera, &preset))
-		choose_first_view(&out_scene->settings.camera, &out_scene->volume,
-				  out_scene->volume.oriented || !gz_scene_has_volume(&settings));
+		choose_first_view(out_scene);
 	return result;
 }
 

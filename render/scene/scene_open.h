@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "render/data/clip_box.h"
 #include "render/scene/scene.h"
 
 /** The kinds of files that gazeview opens. */
@@ -68,10 +69,13 @@ enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_ra
 					    struct gz_scene_settings *out_settings);
 
 /**
- * Move a camera along its direction until it sees the whole box of a volume with a margin of a
- * tenth, in a picture that is at least as wide as high. It then looks at the box's centre. Sets the
- * eye and the height of the view, so the box fits in both projections.
+ * Move a camera along its direction until it sees a part of a volume with a margin of a tenth, in a
+ * picture that is at least as wide as high. It then looks at that box's centre. Sets the eye and
+ * the height of the view, so the box fits in both projections.
+ *
+ * @param box  the part, such as what gz_content_find() finds; NULL: the whole volume
  */
-void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume);
+void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume,
+		   const struct gz_clip_box *box);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "render/data/voxel_colour.h"
 #include "render/scene/techniques.h"
+#include "render/transfer/transfer_presets.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -64,6 +65,10 @@ static const struct gz_option transfer_options[] = {
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "transfer function, .tf; searched as volume.file is; without it one is made for "
 		  "the volume" },
+	{ "transfer.preset", GZ_OPTION_CHOICE, AT(transfer_preset),
+	  .choices = gz_transfer_preset_choices, .preset = "auto",
+	  .help = "the transfer function that is made where there is no file; auto: ct_tissue for "
+		  "Hounsfield units, else tissue" },
 	{ "transfer.also", GZ_OPTION_STRING, AT(transfer_also), .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "further transfer functions for gazebench, separated by blanks" },
 };

@@ -53,6 +53,8 @@ struct gz_scene_settings {
 	struct gz_particle_grid particles; /**< how a file of particles becomes a volume */
 	struct gz_label_look labels;       /**< how labels become surfaces */
 	char transfer_file[GZ_PATH_SIZE];  /**< empty: the object's, or one made for the volume */
+	int transfer_preset;               /**< enum gz_transfer_preset + 1 of the one that is made;
+					      0: gz_transfer_preset_for() */
 	char transfer_also[GZ_PATH_SIZE];  /**< further ones for studies, separated by blanks */
 	struct gz_scene_objects objects;   /**< sections [object NAME] */
 	struct gz_scene_regions regions;   /**< sections [region NUMBER] */

@@ -1,6 +1,7 @@
 #include "render/transfer/transfer.h"
 
 #include <math.h>
+#include <string.h>
 
 /* The last point at or below value, or count where there is none. */
 static size_t point_before(const struct gz_transfer *transfer, double value)
@@ -72,4 +73,26 @@ bool gz_transfer_same(const struct gz_transfer *a, const struct gz_transfer *b)
 		if (!gz_transfer_point_same(&a->points[i], &b->points[i]))
 			return false;
 	return true;
+}
+
+static double opacity_of(const struct gz_transfer *transfer, double value)
+{
+	double rgba[4];
+	gz_transfer_evaluate(transfer, value, rgba);
+	return rgba[3];
+}
+
+bool gz_transfer_shows(const struct gz_transfer *transfer, double least, double greatest)
+{
+	double range[2] = { least, greatest };
+	if (transfer->has_range)
+		memcpy(range, transfer->range, sizeof range);
+	const double width = fmax(range[1] - range[0], 1e-300);
+	const double begin = (least - range[0]) / width, end = (greatest - range[0]) / width;
+	bool shows = opacity_of(transfer, begin) > 0 || opacity_of(transfer, end) > 0;
+	for (size_t i = 0; i < transfer->count && !shows; i++) {
+		const struct gz_transfer_point *point = &transfer->points[i];
+		shows = point->opacity > 0 && point->value >= begin && point->value <= end;
+	}
+	return shows;
 }

@@ -80,6 +80,9 @@ enum gz_result gz_transfer_write(const struct gz_transfer *transfer, const char 
  */
 void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, double out_rgba[4]);
 
+/** Whether any data value from @p least to @p greatest has an opacity above 0. */
+bool gz_transfer_shows(const struct gz_transfer *transfer, double least, double greatest);
+
 /** Opacity over @p length voxel lengths: 1 - (1 - opacity)^length (docs/units.md). */
 double gz_transfer_opacity_over(double opacity, double length);
 

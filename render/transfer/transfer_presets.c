@@ -3,7 +3,13 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* All looks are chosen by eye on the scenes of etc/scenes/. */
+#include "render/transfer/colour_map.h"
+
+/* All looks are chosen by eye on the scenes of etc/scenes/. Those for CT begin and end between the
+ * Hounsfield units of tissues, about: air -1000, lung -900 to -500, fat -120 to -50, muscle and
+ * organs 20 to 70, blood with contrast medium 100 to 500, spongy bone 200 to 400, compact bone
+ * above 700 (Prokop and Galanski, Spiral and Multislice Computed Tomography of the Body, 2003; the
+ * tables of others differ by some tens). */
 
 /* A colour, 0 to 1. */
 struct colour {
@@ -162,31 +168,193 @@ static void make_xray(struct making *making)
 	add_point(making, making->high, white, per_voxel(making, 0.97, 0.8));
 }
 
+/* The most frequent value; an end of the range if it lies in the outermost bin. */
+static double most_frequent(const struct making *making)
+{
+	const struct gz_histogram *histogram = making->histogram;
+	int mode = 0;
+	for (int bin = 1; bin < histogram->bins; bin++)
+		mode = histogram->counts[bin] > histogram->counts[mode] ? bin : mode;
+	if (mode == 0)
+		return making->low;
+	return fmin(gz_histogram_bin_value(histogram, mode), making->high);
+}
+
+/* A field's most frequent value is its background, which may lie anywhere: how dense a value is
+ * grows with the square of the distance from it. */
+static void make_field(struct making *making)
+{
+	const double dense = per_voxel(making, 0.9, 0.1), background = most_frequent(making);
+	const double below = background - making->low, above = making->high - background;
+	const double most = fmax(fmax(below, above), 1e-300), near = 0.25 * most;
+	const struct colour black = { 0, 0, 0 };
+	add_point(making, making->low, black, dense * pow(below / most, 2));
+	if (below > near)
+		add_point(making, background - near, black, dense * pow(near / most, 2));
+	add_point(making, background, black, 0);
+	if (above > near)
+		add_point(making, background + near, black, dense * pow(near / most, 2));
+	add_point(making, making->high, black, dense * pow(above / most, 2));
+	gz_transfer_colour(making->transfer, GZ_COLOUR_MAP_VIRIDIS);
+}
+
+static const struct colour ct_flesh = { 0.82, 0.47, 0.37 }, ct_bone = { 0.93, 0.86, 0.73 },
+			   ct_white = { 1, 0.98, 0.94 };
+
+/* Bone from where only little else is as dense. */
+static void add_bone(struct making *making, double begin, double end)
+{
+	const double solid = per_voxel(making, 0.97, 0.02);
+	add_point(making, begin, ct_bone, 0);
+	add_point(making, end, ct_bone, solid);
+	add_point(making, 1200, ct_white, solid);
+}
+
+static void make_ct_tissue(struct making *making)
+{
+	const double veil = per_voxel(making, 0.5, 0.1), solid = per_voxel(making, 0.97, 0.02);
+	add_point(making, making->low, ct_flesh, 0);
+	add_point(making, -200, ct_flesh, 0);
+	add_point(making, -20, ct_flesh, veil);
+	add_point(making, 120, ct_flesh, veil);
+	add_point(making, 300, ct_bone, solid);
+	add_point(making, 1200, ct_white, solid);
+}
+
+static void make_ct_bone(struct making *making)
+{
+	add_point(making, making->low, ct_bone, 0);
+	add_bone(making, 180, 350);
+}
+
+static void make_ct_vessels(struct making *making)
+{
+	const struct colour red = { 0.78, 0.16, 0.12 };
+	const double solid = per_voxel(making, 0.97, 0.02);
+	add_point(making, making->low, red, 0);
+	add_point(making, 120, red, 0);
+	add_point(making, 220, red, solid);
+	add_point(making, 400, red, solid);
+	add_point(making, 600, ct_bone, solid);
+	add_point(making, 1200, ct_white, solid);
+}
+
+static void make_ct_skin(struct making *making)
+{
+	const struct colour skin = { 0.90, 0.70, 0.58 };
+	const double solid = per_voxel(making, 0.99, 0.015);
+	add_point(making, making->low, skin, 0);
+	add_point(making, -500, skin, 0);
+	add_point(making, -250, skin, solid);
+	add_point(making, 150, skin, solid);
+	add_point(making, 350, ct_bone, solid);
+}
+
+static void make_ct_lung(struct making *making)
+{
+	const struct colour air = { 0.35, 0.55, 0.80 }, wall = { 0.92, 0.60, 0.55 };
+	const double veil = per_voxel(making, 0.85, 0.1);
+	add_point(making, making->low, air, 0);
+	add_point(making, -940, air, 0);
+	add_point(making, -800, air, 0.3 * veil);
+	add_point(making, -550, wall, veil);
+	add_point(making, -350, wall, 0);
+	add_point(making, making->high, wall, 0);
+}
+
 /* One look. */
 static const struct preset {
 	struct gz_transfer_preset_text text;
 	void (*make)(struct making *making);
+	bool for_hounsfield;
 } presets[GZ_PRESET_COUNT] = {
 	[GZ_PRESET_TISSUE] = { { "Soft tissue and bone",
-				 "soft tissue as a veil, dense tissue solid" },
-			       make_tissue },
-	[GZ_PRESET_SURFACE] = { { "Surface", "one surface, where object and background separate" },
-				make_surface },
-	[GZ_PRESET_GLASS] = { { "Glass", "two translucent surfaces, the inner one amber" },
-			      make_glass },
-	[GZ_PRESET_GREY] = { { "Grey ramp", "denser is brighter" }, make_grey },
-	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities" }, make_heat },
-	[GZ_PRESET_INVERSE] = { { "Inverse", "denser is darker, for a bright background" },
-				make_inverse },
-	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing is hidden" }, make_xray },
+				 "soft tissue as a veil, dense tissue solid", true },
+			       make_tissue,
+			       false },
+	[GZ_PRESET_SURFACE] = { { "Surface", "one surface, where object and background separate",
+				  true },
+				make_surface,
+				false },
+	[GZ_PRESET_GLASS] = { { "Glass", "two translucent surfaces, the inner one amber", true },
+			      make_glass,
+			      false },
+	[GZ_PRESET_GREY] = { { "Grey ramp", "denser is brighter", false }, make_grey, false },
+	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities", false },
+			     make_heat,
+			     false },
+	[GZ_PRESET_INVERSE] = { { "Inverse", "denser is darker, for a bright background", false },
+				make_inverse,
+				false },
+	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing is hidden", false },
+			     make_xray,
+			     false },
+	[GZ_PRESET_FIELD] = { { "Field", "the most frequent value is clear, viridis", false },
+			      make_field,
+			      false },
+	[GZ_PRESET_CT_TISSUE] = { { "CT: bone in soft tissue",
+				    "bone within a veil of muscle and organs", true },
+				  make_ct_tissue,
+				  true },
+	[GZ_PRESET_CT_BONE] = { { "CT: bone", "bone alone, from 180 HU", true },
+				make_ct_bone,
+				true },
+	[GZ_PRESET_CT_VESSELS] = { { "CT: vessels", "red: with contrast medium, from 120 HU; bone",
+				     true },
+				   make_ct_vessels,
+				   true },
+	[GZ_PRESET_CT_SKIN] = { { "CT: skin", "the body's surface, from -500 HU", true },
+				make_ct_skin,
+				true },
+	[GZ_PRESET_CT_LUNG] = { { "CT: lung", "lung and airways; soft tissue and bone are clear",
+				  false },
+				make_ct_lung,
+				true },
 };
 
-const char *const gz_transfer_preset_names[] = { "tissue", "surface", "glass", "grey",
-						 "heat",   "inverse", "xray",  NULL };
+const char *const gz_transfer_preset_choices[] = { "auto",    "tissue",    "surface", "glass",
+						   "grey",    "heat",      "inverse", "xray",
+						   "field",   "ct_tissue", "ct_bone", "ct_vessels",
+						   "ct_skin", "ct_lung",   NULL };
 
 const struct gz_transfer_preset_text *gz_transfer_preset_text(enum gz_transfer_preset which)
 {
 	return &presets[which].text;
+}
+
+/* Share of the voxels from @p least to @p most, for each unit of the values between. */
+static double density_between(const struct gz_histogram *histogram, double least, double most)
+{
+	double count = 0;
+	for (int bin = 0; bin < histogram->bins; bin++) {
+		const double value = gz_histogram_bin_value(histogram, bin);
+		count += value >= least && value <= most ? (double)histogram->counts[bin] : 0;
+	}
+	return count / (double)histogram->total / (most - least);
+}
+
+bool gz_histogram_is_hounsfield(const struct gz_histogram *histogram)
+{
+	/* Scanners pad with -2000 or -3024, and metal reaches 3071 or, extended, 32767. Chosen: the
+	 * shares; lungs are between air and water, but never as much as the air around a body. */
+	static const double padding = -3100, metal = 33000, several = 3, tissue_least = 0.02;
+	if (histogram->total == 0 || histogram->data_min < padding || histogram->data_min > -900 ||
+	    histogram->data_max < 200 || histogram->data_max > metal)
+		return false;
+	const double air = density_between(histogram, -1100, -850);
+	const double between = density_between(histogram, -850, -250);
+	const double tissue = density_between(histogram, -150, 150);
+	return air > several * between && tissue > several * between && tissue * 300 > tissue_least;
+}
+
+bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram)
+{
+	return !presets[which].for_hounsfield || gz_histogram_is_hounsfield(histogram);
+}
+
+enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram)
+{
+	return gz_histogram_is_hounsfield(histogram) ? GZ_PRESET_CT_TISSUE : GZ_PRESET_TISSUE;
 }
 
 void gz_transfer_preset_make(enum gz_transfer_preset which, const struct gz_histogram *histogram,
@@ -203,6 +371,8 @@ void gz_transfer_preset_make(enum gz_transfer_preset which, const struct gz_hist
 	const double top = gz_histogram_percentile(histogram, 0.9999);
 	if (top - making.low < (making.high - making.low) / 2 && top > making.low)
 		making.high = top;
+	if (presets[which].for_hounsfield)
+		making.low = fmax(making.low, -1024);
 	presets[which].make(&making);
 	out_transfer->has_range = making.high > making.low;
 	out_transfer->range[0] = making.low;

@@ -5,6 +5,8 @@
 #ifndef GZ_RENDER_TRANSFER_TRANSFER_PRESETS_H
 #define GZ_RENDER_TRANSFER_TRANSFER_PRESETS_H
 
+#include <stdbool.h>
+
 #include "render/transfer/histogram.h"
 #include "render/transfer/transfer.h"
 
@@ -17,23 +19,41 @@ enum gz_transfer_preset {
 	GZ_PRESET_HEAT,
 	GZ_PRESET_INVERSE, /**< like grey, for data with a bright background */
 	GZ_PRESET_XRAY,
+	GZ_PRESET_FIELD,     /**< far from the most frequent value is dense */
+	GZ_PRESET_CT_TISSUE, /**< this and those below: for Hounsfield units */
+	GZ_PRESET_CT_BONE,
+	GZ_PRESET_CT_VESSELS, /**< filled with contrast medium, and bone */
+	GZ_PRESET_CT_SKIN,
+	GZ_PRESET_CT_LUNG,
 	GZ_PRESET_COUNT,
 };
 
-/** The preset for volumes without a transfer function: it shows something of every volume. */
-#define GZ_PRESET_DEFAULT GZ_PRESET_TISSUE
-
-/** Names in command lines and files: "tissue", "surface", … NULL-terminated. */
-extern const char *const gz_transfer_preset_names[];
+/** "auto", which leaves it to gz_transfer_preset_for(), then the names: "tissue", "surface", …
+ *  NULL-terminated. */
+extern const char *const gz_transfer_preset_choices[];
 
 /** How a preset is described in a list. */
 struct gz_transfer_preset_text {
 	const char *title; /**< "Soft tissue and bone" */
 	const char *about; /**< one line: what it shows */
+	bool lit; /**< it shows surfaces, which need lighting (render.shading = gradient) */
 };
 
 /** The texts of a preset, static. */
 const struct gz_transfer_preset_text *gz_transfer_preset_text(enum gz_transfer_preset which);
+
+/**
+ * Whether values are Hounsfield units of a body in air: many voxels lie around air (-1000) and
+ * around water (0), and few lie between.
+ */
+bool gz_histogram_is_hounsfield(const struct gz_histogram *histogram);
+
+/** Whether a preset makes sense: those for Hounsfield units do not for other values. */
+bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram);
+
+/** The preset for a volume without a transfer function: bone in soft tissue if values are
+ * Hounsfield units, else GZ_PRESET_TISSUE, which shows something of every volume. */
+enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram);
 
 /**
  * Make a transfer function that shows a volume.

@@ -10,6 +10,8 @@
 #include "render/mesh/mesh_read.h"
 #include "render/scene/scene_open.h"
 #include "render/scene/scene_picture.h"
+#include "render/transfer/content.h"
+#include "render/transfer/transfer_presets.h"
 #include "volume_files.h"
 
 static unsigned char voxels[4 * 4 * 8];
@@ -80,27 +82,89 @@ static void binary_file_is_no_scene(void **state)
 	assert_int_equal(gz_file_kind_of(files_write("unknown", "[a]\n", 4)), GZ_FILE_OTHER);
 }
 
-static void volume_without_a_scene_is_seen_whole(void **state)
+/* How far from the picture's middle the corners of a box are at most, as a share of the picture. */
+static double widest_corner(const struct gz_camera *camera, const struct gz_volume *volume,
+			    const struct gz_clip_box *box)
+{
+	double half[3], widest = 0;
+	gz_volume_half_extent(volume, half);
+	for (int corner = 0; corner < 8; corner++) {
+		double at[3];
+		struct gz_point point;
+		for (int i = 0; i < 3; i++)
+			at[i] = (2 * (corner >> i & 1 ? box->greatest[i] : box->least[i]) - 1) *
+				half[i];
+		assert_true(gz_camera_project(camera, 300, 300, at, &point));
+		widest = fmax(widest, fmax(fabs(point.x - 0.5), fabs(point.y - 0.5)));
+	}
+	return widest;
+}
+
+/* Below, the test's volume is background. */
+static void volume_without_a_scene_is_lit_and_what_is_seen_of_it_fills_the_view(void **state)
 {
 	(void)state;
+	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
 	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
-	const struct gz_camera *camera = &scene.settings.camera;
-	double half[3], widest = 0;
+	struct gz_clip_box content;
 	assert_true(scene.settings.volume_file[0] == '/');
 	assert_true(scene.transfer.count >= 1);
-	gz_volume_half_extent(&scene.volume, half);
-	for (int corner = 0; corner < 8; corner++) {
-		const double at[3] = { corner & 1 ? half[0] : -half[0],
-				       corner & 2 ? half[1] : -half[1],
-				       corner & 4 ? half[2] : -half[2] };
-		struct gz_point point;
-		assert_true(gz_camera_project(camera, 300, 300, at, &point));
-		const double aside = fmax(fabs(point.x - 0.5), fabs(point.y - 0.5));
-		widest = fmax(widest, aside);
-	}
+	assert_int_equal(scene.settings.rays.shading, GZ_SHADING_GRADIENT);
+	gz_content_find(&scene.volume, &scene.transfer, &whole, &content);
+	assert_true(content.least[2] >= 0.25 && content.greatest[2] == 1);
+	const double widest = widest_corner(&scene.settings.camera, &scene.volume, &content);
 	if (!(widest > 0.44 && widest < 0.46))
-		fail_msg("the box takes %g of half the picture", 2 * widest);
+		fail_msg("the content takes %g of half the picture", 2 * widest);
 	gz_scene_free(&scene);
+}
+
+static enum gz_result ask_for_ct_bone_unlit(void *user, struct gz_scene_settings *settings)
+{
+	(void)user;
+	settings->rays.shading = GZ_SHADING_NONE;
+	settings->transfer_preset = 1 + GZ_PRESET_CT_BONE;
+	return GZ_OK;
+}
+
+static void shading_and_preset_of_the_request_are_kept(void **state)
+{
+	(void)state;
+	struct gz_scene asked, usual = opened(write_nrrd("v.nrrd"), NULL);
+	const struct gz_scene_request request = { .path = files_path("v.nrrd"),
+						  .change = ask_for_ct_bone_unlit };
+	assert_int_equal(gz_scene_open(&request, NULL, &asked), GZ_OK);
+	assert_int_equal(asked.settings.rays.shading, GZ_SHADING_NONE);
+	assert_false(gz_transfer_same(&asked.transfer, &usual.transfer));
+	gz_scene_free(&asked);
+	gz_scene_free(&usual);
+}
+
+static enum gz_result take_transfer_of_others(void *user, struct gz_scene_settings *settings)
+{
+	snprintf(settings->transfer_file, sizeof settings->transfer_file, "%s", (const char *)user);
+	return GZ_OK;
+}
+
+static void transfer_function_for_other_data_is_told(void **state)
+{
+	(void)state;
+	static const char *const texts[] = { "range 1000 2000\n0.1 0 0 0 0\n0.2 1 1 1 1\n",
+					     "range 0 2000\n0.1 0 0 0 0\n0.2 1 1 1 1\n" };
+	for (int i = 0; i < 2; i++) {
+		struct gz_scene scene;
+		struct captured_log log;
+		char file[GZ_PATH_SIZE];
+		snprintf(file, sizeof file, "%s",
+			 files_write("other.tf", texts[i], strlen(texts[i])));
+		const struct gz_scene_request request = { .path = write_nrrd("v.nrrd"),
+							  .change = take_transfer_of_others,
+							  .user = file };
+		captured_log_init(&log, NULL);
+		assert_int_equal(gz_scene_open(&request, &log.log, &scene), GZ_OK);
+		/* The data are 0 to 254. */
+		assert_int_equal(strstr(log.last, "shows nothing of this volume") != NULL, i == 0);
+		gz_scene_free(&scene);
+	}
 }
 
 /* Two steps of 27 particles, which lie on a lattice and then closer together. */
@@ -218,19 +282,11 @@ static void fitted_camera_sees_the_box_in_either_projection(void **state)
 {
 	(void)state;
 	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
+	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
 	struct gz_camera camera = scene.settings.camera;
-	const double half[3] = { 0.25, 0.25, 0.5 };
 	camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
-	gz_camera_fit(&camera, &scene.volume);
-	double widest = 0;
-	for (int corner = 0; corner < 8; corner++) {
-		const double at[3] = { corner & 1 ? half[0] : -half[0],
-				       corner & 2 ? half[1] : -half[1],
-				       corner & 4 ? half[2] : -half[2] };
-		struct gz_point point;
-		assert_true(gz_camera_project(&camera, 300, 300, at, &point));
-		widest = fmax(widest, fmax(fabs(point.x - 0.5), fabs(point.y - 0.5)));
-	}
+	gz_camera_fit(&camera, &scene.volume, NULL);
+	const double widest = widest_corner(&camera, &scene.volume, &whole);
 	if (!(widest > 0.44 && widest < 0.46))
 		fail_msg("the box takes %g of half the picture", 2 * widest);
 	gz_scene_free(&scene);
@@ -365,7 +421,10 @@ TEST_SUITE(scene_open)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
 		cmocka_unit_test(binary_file_is_no_scene),
-		cmocka_unit_test(volume_without_a_scene_is_seen_whole),
+		cmocka_unit_test(
+			volume_without_a_scene_is_lit_and_what_is_seen_of_it_fills_the_view),
+		cmocka_unit_test(transfer_function_for_other_data_is_told),
+		cmocka_unit_test(shading_and_preset_of_the_request_are_kept),
 		cmocka_unit_test(mesh_opens_without_a_scene),
 		cmocka_unit_test(particles_open_as_a_volume),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),

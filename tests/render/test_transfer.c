@@ -283,10 +283,31 @@ static void transfer_that_no_file_can_hold_is_not_written(void **state)
 	assert_int_equal(gz_transfer_write(&t, "/no/such/folder/a.tf", &log.log), GZ_ERR_IO);
 }
 
+static void it_shows_data_where_it_has_opacity(void **state)
+{
+	(void)state;
+	const struct gz_transfer peak = {
+		.count = 3,
+		.points = { { .value = 0.4 }, { .value = 0.5, .opacity = 0.3 }, { .value = 0.6 } },
+		.has_range = true,
+		.range = { -100, 100 },
+	};
+	struct gz_transfer own = peak;
+	own.has_range = false;
+	assert_true(gz_transfer_shows(&peak, -5, 5));
+	assert_true(gz_transfer_shows(&peak, 19, 300));     /* its last part */
+	assert_true(gz_transfer_shows(&peak, -1000, 1000)); /* all of it lies between */
+	assert_true(gz_transfer_shows(&peak, 3, 3));
+	assert_false(gz_transfer_shows(&peak, 20, 300));
+	assert_false(gz_transfer_shows(&peak, -1000, -20));
+	assert_true(gz_transfer_shows(&own, 20, 300));
+}
+
 TEST_SUITE(transfer)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(file_with_every_word_is_read),
+		cmocka_unit_test(it_shows_data_where_it_has_opacity),
 		cmocka_unit_test(functions_are_the_same_where_points_interpolation_and_range_are),
 		cmocka_unit_test(without_range_and_interpolation_it_is_linear_over_the_data),
 		cmocka_unit_test(numbers_are_read_alike_in_every_locale),

@@ -174,6 +174,28 @@ class TransferWindow(WindowCase):
         self.press("e")
         self.until(lambda p: not self.find_plot(p), "closed")
 
+    def test_colours_of_a_map_keep_the_opacity(self):
+        first = self.open_editor()
+        opacities = [line.split()[4] for line in read_function().splitlines()
+                     if line and line[0].isdigit()]
+        left, bottom = self.corner
+        self.move(left + 141, bottom - PLOT[1] - 22)
+        self.tool("click", 1)
+        self.until_idle()
+        self.move(left + 141, bottom - PLOT[1] - 22 + 41)
+        self.tool("click", 1)
+        self.until_other(first, "colours")
+        before = read_function()
+        self.move(left + 380, bottom + 105)
+        self.tool("click", 1)
+        self.wait_for(lambda: read_function() != before, "the coloured file")
+        points = [[float(word) for word in line.split()] for line in read_function().splitlines()
+                  if line and line[0].isdigit()]
+        for at, colour in ((0, (68, 1, 84)), (-1, (253, 231, 37))):
+            for part, known in zip(points[at][1:4], colour):
+                self.assertAlmostEqual(255 * part, known, delta=0.01)
+        self.assertTrue({float(o) for o in opacities} <= {point[4] for point in points})
+
     def test_saved_preset_gives_the_same_picture_without_a_window(self):
         first = self.open_editor()
         left, bottom = self.corner
@@ -189,10 +211,15 @@ class TransferWindow(WindowCase):
         self.tool("click", 1)
         self.wait_for(lambda: read_function() != before, "the preset's file")
         out = os.path.join(PLACE.name, "saved.png")
-        done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SCREEN, *FIXED, "--out", out)
+        done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SCREEN, *FIXED,
+                   "--render.shading", "gradient", "--out", out)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue(read_png(out).part(*SHOWN) == self.shown(chosen), "another picture")
-        # It is saved: after undo it differs, and the first picture is shown again.
+        # Light is one step, and the curve another.
+        lit = self.shown(self.grab())
+        self.tool("key", "ctrl+z")
+        self.until(lambda p: self.shown(p) != lit, "without light")
+        self.assertFalse(self.same(self.rest(), first), "the curve is still the preset's")
         self.tool("key", "ctrl+z")
         self.until_same(first, "without preset")
 

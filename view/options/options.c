@@ -13,6 +13,7 @@
 #include "render/picture/image.h"
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
+#include "render/transfer/transfer_presets.h"
 
 #define GZ_LOG_MODULE "gazeview"
 
@@ -146,6 +147,10 @@ const struct gz_option gz_view_option_table[] = {
 	  .help = "short for --volume.resample linear" },
 	{ "transfer.file", GZ_OPTION_STRING, AT(transfer_file), .max = GZ_PATH_SIZE,
 	  .help = "transfer function (.tf) to use instead of the scene's" },
+	{ "transfer.preset", GZ_OPTION_CHOICE, AT(transfer_preset),
+	  .choices = gz_transfer_preset_choices,
+	  .help = "transfer function to make for a volume without one; auto: ct_tissue for "
+		  "Hounsfield units, else tissue" },
 	{ "formats", GZ_OPTION_BOOL, AT(formats), .preset = "false",
 	  .help = "print the formats of volumes and particles that are read, and exit" },
 	{ "help", GZ_OPTION_BOOL, AT(help), .preset = "false", .help = "print this and exit" },
@@ -184,12 +189,16 @@ static enum gz_result check_targets(const struct gz_view_options *options, const
 static enum gz_result check_replay(const struct gz_view_options *options, const struct gz_log *log)
 {
 	static const char *const others[] = {
-		"scene",         "size",        "gaze",        "frames",          "turn",
-		"display-px",    "display-mm",  "distance-mm", "write-volume",    "record",
-		"transfer.file", "volume.dims", "volume.type", "volume.endian",   "volume.spacing",
-		"volume.series", "time-point",  "play",        "volume.channels", "volume.opacity",
-		"list-objects",  "list-series", "resample",    "volume.resample", "write-mesh",
-		"isovalue",      "technique",
+		"scene",           "size",           "gaze",
+		"frames",          "turn",           "display-px",
+		"display-mm",      "distance-mm",    "write-volume",
+		"record",          "transfer.file",  "volume.dims",
+		"volume.type",     "volume.endian",  "volume.spacing",
+		"volume.series",   "time-point",     "play",
+		"volume.channels", "volume.opacity", "list-objects",
+		"list-series",     "resample",       "volume.resample",
+		"write-mesh",      "isovalue",       "technique",
+		"transfer.preset",
 	};
 	const char *other = options->scene[0] ? "scene" : NULL;
 	for (size_t k = 0; k < sizeof others / sizeof others[0] && !other; k++)
@@ -268,6 +277,7 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->out[0]                           ? "--out"
 			    : options->video[0]                         ? "--video"
 			    : options->transfer_file[0]                 ? "--transfer.file"
+			    : options->transfer_preset >= 0             ? "--transfer.preset"
 			    : options->record[0]                        ? "--record"
 			    : options->replay[0]                        ? "--replay"
 			    : options->stats[0]                         ? "--stats"
@@ -657,6 +667,7 @@ enum gz_result gz_view_options_read(int argc, char *const *argv, const struct gz
 	out_options->method = out_options->volume_type = out_options->volume_endian = -1;
 	out_options->volume_opacity = out_options->technique = -1;
 	out_options->volume_resample = -1;
+	out_options->transfer_preset = -1;
 	gz_view_pick_scene_tables(&out_options->scene_settings, &tables);
 	enum gz_result r = read_arguments(argc, argv, &tables, log, out_options);
 	if (r != GZ_OK || only_prints(out_options))
@@ -694,6 +705,8 @@ bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_la
 static void apply_transfer(const struct gz_view_options *options,
 			   struct gz_scene_settings *settings)
 {
+	if (options->transfer_preset >= 0)
+		settings->transfer_preset = options->transfer_preset;
 	if (!options->transfer_file[0])
 		return;
 	char *real = realpath(options->transfer_file, NULL);

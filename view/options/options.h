@@ -105,6 +105,7 @@ struct gz_view_options {
 	struct gz_particle_grid particles;  /**< those that are given replace the scene's */
 	bool particles_given[GZ_PARTICLE_GRID_OPTIONS];
 	double volume_spacing[3];         /**< 0: not given */
+	int transfer_preset;              /**< of gz_transfer_preset_choices; -1: not given */
 	char transfer_file[GZ_PATH_SIZE]; /**< replaces the scene's; empty: not given */
 
 	struct gz_target_options target; /**< targets instead of a scene, if any are named */

@@ -2,8 +2,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "render/data/voxel_colour.h"
+#include "render/transfer/colour_map.h"
 #include "render/transfer/transfer_presets.h"
 #include "view/panels/widgets.h"
 
@@ -341,29 +343,69 @@ static void draw_point_fields(struct gz_transfer_panel *panel)
 	gz_widgets_enable();
 }
 
-static void draw_preset_choice(struct gz_transfer_panel *panel)
-{
+/* The presets that make sense for a volume. */
+struct preset_list {
+	enum gz_transfer_preset presets[GZ_PRESET_COUNT];
 	char lines[GZ_PRESET_COUNT][96];
-	const char *names[GZ_PRESET_COUNT + 2] = { "Presets" };
-	int chosen = 0;
+	const char *names[GZ_PRESET_COUNT + 2]; /* a title and the lines; NULL-terminated */
+};
+
+static void list_presets(const struct gz_transfer_panel *panel, struct preset_list *list)
+{
+	size_t count = 0;
+	list->names[0] = "Presets";
 	for (int i = 0; i < GZ_PRESET_COUNT; i++) {
-		const struct gz_transfer_preset_text *text =
-			gz_transfer_preset_text((enum gz_transfer_preset)i);
-		snprintf(lines[i], sizeof lines[i], "%s: %s", text->title, text->about);
-		names[i + 1] = lines[i];
+		const enum gz_transfer_preset preset = (enum gz_transfer_preset)i;
+		const struct gz_transfer_preset_text *text = gz_transfer_preset_text(preset);
+		if (!panel->histogram || !gz_transfer_preset_fits(preset, panel->histogram))
+			continue;
+		snprintf(list->lines[count], sizeof list->lines[count], "%s: %s", text->title,
+			 text->about);
+		list->presets[count] = preset;
+		list->names[1 + count] = list->lines[count];
+		count++;
 	}
+	list->names[1 + count] = NULL;
+}
+
+static enum gz_transfer_wish draw_preset_choice(struct gz_transfer_panel *panel)
+{
+	struct preset_list list;
+	enum gz_transfer_wish wish = GZ_TRANSFER_WISH_NONE;
+	int chosen = 0;
+	list_presets(panel, &list);
 	gz_widgets_disable(!panel->histogram);
-	gz_widgets_next_width(0.24f);
-	if (gz_widget_choice("##presets", &chosen, names) && chosen > 0 && panel->histogram) {
+	gz_widgets_next_width(0.2f);
+	if (gz_widget_choice("##presets", &chosen, list.names) && chosen > 0) {
 		struct gz_transfer made;
-		gz_transfer_preset_make((enum gz_transfer_preset)(chosen - 1), panel->histogram,
-					panel->volume, &made);
+		const enum gz_transfer_preset preset = list.presets[chosen - 1];
+		gz_transfer_preset_make(preset, panel->histogram, panel->volume, &made);
 		gz_transfer_edit_end(panel->edit);
 		gz_transfer_edit_replace(panel->edit, &made);
 		panel->whole_lost = false;
+		wish = gz_transfer_preset_text(preset)->lit ? GZ_TRANSFER_WISH_LIGHT
+							    : GZ_TRANSFER_WISH_NO_LIGHT;
 	}
 	gz_widgets_enable();
-	gz_widget_tooltip("transfer functions fitted to the histogram of this volume");
+	gz_widget_tooltip("transfer functions fitted to the histogram of this volume; they also "
+			  "switch lighting on or off");
+	return wish;
+}
+
+static void draw_colour_choice(struct gz_transfer_panel *panel)
+{
+	const char *names[GZ_COLOUR_MAP_COUNT + 2] = { "Colours" };
+	int chosen = 0;
+	memcpy(names + 1, gz_colour_map_names, GZ_COLOUR_MAP_COUNT * sizeof names[0]);
+	gz_widgets_same_line(0);
+	gz_widgets_next_width(0.15f);
+	if (gz_widget_choice("##colours", &chosen, names) && chosen > 0) {
+		struct gz_transfer coloured = *edited(panel);
+		gz_transfer_colour(&coloured, (enum gz_colour_map)(chosen - 1));
+		gz_transfer_edit_end(panel->edit);
+		gz_transfer_edit_replace(panel->edit, &coloured);
+	}
+	gz_widget_tooltip("perceptually uniform colours over the whole range; opacity stays");
 }
 
 static void draw_undo_buttons(struct gz_transfer_panel *panel)
@@ -421,7 +463,7 @@ static void draw_range_fields(struct gz_transfer_panel *panel)
 			  "the volume");
 	gz_widgets_same_line(0);
 	gz_widgets_disable(!own);
-	gz_widgets_next_width(0.42f);
+	gz_widgets_next_width(0.27f);
 	const struct gz_number_range limits = { .least = -1e38,
 						.greatest = 1e38,
 						.speed = (range[1] - range[0]) / 500,
@@ -471,18 +513,42 @@ static void draw_colour_note(const struct gz_transfer_panel *panel)
 	gz_widget_label(gz_paint_plain, note);
 }
 
+/* A curve for other data may lie wholly beside these. */
+static void draw_stretch_offer(struct gz_transfer_panel *panel)
+{
+	char note[96];
+	const struct gz_histogram *histogram = panel->histogram;
+	if (!histogram || !edited(panel)->has_range ||
+	    gz_transfer_shows(edited(panel), histogram->data_min, histogram->data_max))
+		return;
+	snprintf(note, sizeof note, "Nothing is seen: the data are %.6g to %.6g",
+		 histogram->data_min, histogram->data_max);
+	gz_widget_label(gz_paint_amber, note);
+	gz_widgets_same_line(0);
+	if (gz_widget_button("Stretch to the data")) {
+		const double range[2] = { histogram->data_min, histogram->data_max };
+		gz_transfer_edit_end(panel->edit);
+		begin_step(panel);
+		gz_transfer_edit_range(panel->edit, range[0] < range[1] ? range : NULL);
+		gz_transfer_edit_end(panel->edit);
+	}
+}
+
 static enum gz_transfer_wish draw_transfer_content(struct gz_transfer_panel *panel)
 {
 	keep_selection(panel);
 	draw_colour_note(panel);
-	draw_preset_choice(panel);
+	const enum gz_transfer_wish light = draw_preset_choice(panel);
+	draw_colour_choice(panel);
 	draw_undo_buttons(panel);
 	draw_interpolation_choice(panel);
-	draw_axis_switches(panel);
 	draw_curve_canvas(panel);
 	draw_point_fields(panel);
 	draw_range_fields(panel);
-	return draw_file_row(panel);
+	draw_axis_switches(panel);
+	draw_stretch_offer(panel);
+	const enum gz_transfer_wish wish = draw_file_row(panel);
+	return wish != GZ_TRANSFER_WISH_NONE ? wish : light;
 }
 
 enum gz_transfer_wish gz_transfer_panel_draw(struct gz_transfer_panel *panel)

@@ -18,8 +18,10 @@
 /** What the panel asks its caller to do. */
 enum gz_transfer_wish {
 	GZ_TRANSFER_WISH_NONE,
-	GZ_TRANSFER_WISH_LOAD, /**< load panel->file */
-	GZ_TRANSFER_WISH_SAVE, /**< save to panel->file */
+	GZ_TRANSFER_WISH_LOAD,     /**< load panel->file */
+	GZ_TRANSFER_WISH_SAVE,     /**< save to panel->file */
+	GZ_TRANSFER_WISH_LIGHT,    /**< light surfaces: the preset that was chosen shows some */
+	GZ_TRANSFER_WISH_NO_LIGHT, /**< the preset that was chosen is for no lighting */
 };
 
 /** What the panel shows and changes. Zero-initialise it; set the first fields before each drawing.

@@ -221,6 +221,13 @@ static void save_transfer(struct gz_window *window)
 	use_transfer_file(window, transfer->panel.file);
 }
 
+static void light_surfaces(struct gz_window *window, bool light)
+{
+	const struct gz_scene_settings before = window->settings;
+	window->settings.rays.shading = light ? GZ_SHADING_GRADIENT : GZ_SHADING_NONE;
+	gz_window_take_changes(window, &before);
+}
+
 static void draw_transfer_editor(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
@@ -241,6 +248,8 @@ static void draw_transfer_editor(struct gz_window *window, const struct gz_windo
 		gz_window_transfer_load(window, panel->file);
 	else if (wish == GZ_TRANSFER_WISH_SAVE)
 		save_transfer(window);
+	else if (wish == GZ_TRANSFER_WISH_LIGHT || wish == GZ_TRANSFER_WISH_NO_LIGHT)
+		light_surfaces(window, wish == GZ_TRANSFER_WISH_LIGHT);
 	/* turn_transfer() shows changes in the next turn. */
 	if (gz_transfer_edit_changes(transfer->edit) != transfer->shown)
 		gz_window_wake_panels(window);
