@@ -1,7 +1,7 @@
 /**
  * @file
- * The points of a mesh (mesh_points.h), kept in a file beside the input so that the next start need
- * not make them again.
+ * The points of a mesh (mesh_points.h), kept in a file so that the next start need not make them
+ * again.
  */
 #ifndef GZ_RENDER_ILLUSTRATION_CACHED_POINTS_H
 #define GZ_RENDER_ILLUSTRATION_CACHED_POINTS_H

@@ -60,8 +60,8 @@ struct gz_object {
 	const struct gz_object_style *style; /**< NULL: gz_object_style_plain */
 	/** How illustrations shade it; NULL: as the settings say. */
 	const struct gz_shading_template *shading_template;
-	const char *input; /**< file that the mesh stems from, beside which what is computed of it
-			      may be kept; NULL: none */
+	const char *input; /**< file that the mesh stems from; what is computed of it may be kept;
+			      NULL: none */
 	/** Numbers that the owner increases when it changes what the pointers above lead to. */
 	uint64_t data_revision, transfer_revision;
 };

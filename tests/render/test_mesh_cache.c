@@ -1,5 +1,5 @@
 /* Files of what was computed of a mesh: they survive another version, being cut short and lies
- * about their length, and are found where the input's folder cannot be written. */
+ * about their length, and are found where the user's folder cannot be written. */
 #include "suite.h"
 
 #include <fcntl.h>
@@ -11,12 +11,13 @@
 #include <unistd.h>
 
 #include "base/sizes.h"
+#include "kept_files.h"
 #include "mesh_shapes.h"
 #include "render/mesh/cache/mesh_cache.h"
 
 enum { FLOATS = 12, FILE_SIZE = 88 + 4 * FLOATS };
 
-static char folder[64];
+static const char *folder;
 static int log_lines;
 static char last_line[2048];
 
@@ -40,17 +41,15 @@ static struct gz_log make_log(void)
 static int make_folder(void **state)
 {
 	(void)state;
-	strcpy(folder, "/tmp/gazecast-mesh-cache-XXXXXX");
-	return mkdtemp(folder) && setenv("XDG_CACHE_HOME", folder, 1) == 0 ? 0 : -1;
+	folder = kept_files_open();
+	return 0;
 }
 
 static int remove_folder(void **state)
 {
-	char command[128];
 	(void)state;
-	snprintf(command, sizeof command, "rm -rf '%s'", folder);
-	return system(
-		command); /* NOLINT(bugprone-command-processor,cert-env33-c): a name of ours */
+	kept_files_close();
+	return 0;
 }
 
 static void name_file(const char *name, char path[GZ_PATH_SIZE])
@@ -94,13 +93,22 @@ static enum gz_result load_into(const char *input, struct sample *sample, const 
 	return gz_mesh_cache_load(&place, &sample->key, sample->arrays, 2, log);
 }
 
-/* Store a sample beside "ball.ply" and read the file's bytes. */
+/* The path of a sample's file in the user's cache folder. */
+static void name_kept(const struct sample *sample, char path[GZ_PATH_SIZE])
+{
+	char hex[2 * GZ_MESH_KEY_SIZE + 1];
+	for (int i = 0; i < GZ_MESH_KEY_SIZE; i++)
+		snprintf(hex + 2 * i, 3, "%02x", sample->key.bytes[i]);
+	snprintf(path, GZ_PATH_SIZE, "%s/gazecast/meshes/%s.sample", folder, hex);
+}
+
+/* Store a sample of "ball.ply" and read the file's bytes. */
 static void store_bytes(struct sample *sample, unsigned char bytes[FILE_SIZE])
 {
 	char input[GZ_PATH_SIZE], path[GZ_PATH_SIZE];
 	fill_sample(sample);
 	name_file("ball.ply", input);
-	name_file("ball.ply.sample", path);
+	name_kept(sample, path);
 	const struct gz_mesh_cache_place place = { input, "sample" };
 	assert_int_equal(gz_mesh_cache_store(&place, &sample->key, sample->arrays, 2, NULL), GZ_OK);
 	FILE *file = fopen(path, "rb");
@@ -110,10 +118,10 @@ static void store_bytes(struct sample *sample, unsigned char bytes[FILE_SIZE])
 	fclose(file);
 }
 
-static void put_bytes(const unsigned char *bytes, size_t size)
+static void put_bytes(const struct sample *sample, const unsigned char *bytes, size_t size)
 {
 	char path[GZ_PATH_SIZE];
-	name_file("ball.ply.sample", path);
+	name_kept(sample, path);
 	FILE *file = fopen(path, "wb");
 	assert_non_null(file);
 	assert_int_equal(fwrite(bytes, 1, size, file), size);
@@ -185,7 +193,7 @@ static void faulty_files_are_refused_with_one_line(void **state)
 		const struct gz_log log = make_log();
 		memcpy(changed, bytes, FILE_SIZE);
 		changed[faults[i].at] = (unsigned char)(changed[faults[i].at] + faults[i].add);
-		put_bytes(changed, FILE_SIZE + (size_t)(ptrdiff_t)faults[i].longer);
+		put_bytes(&sample, changed, FILE_SIZE + (size_t)(ptrdiff_t)faults[i].longer);
 		assert_int_equal(load_into(input, &sample, &log), GZ_ERR_FORMAT);
 		if (log_lines != 1 || !strstr(last_line, faults[i].says))
 			print_message("fault %zu: %d lines, %s\n", i, log_lines, last_line);
@@ -228,21 +236,35 @@ static void missing_file_is_not_found_and_not_logged(void **state)
 	assert_int_equal(log_lines, 0);
 }
 
-/* Where nothing can be written beside the input, the user's folder serves. */
-static void users_folder_serves_where_the_input_cannot(void **state)
+/* Make a file of which no folder can be made, the user's. */
+static void block_user_folder(void)
+{
+	char blocked[GZ_PATH_SIZE];
+	name_file("a-file", blocked);
+	close(open(blocked, O_CREAT | O_WRONLY, 0600));
+	assert_int_equal(setenv("XDG_CACHE_HOME", blocked, 1), 0);
+}
+
+static void input_folder_serves_where_the_users_cannot(void **state)
 {
 	(void)state;
 	struct sample sample;
-	char input[GZ_PATH_SIZE];
+	char input[GZ_PATH_SIZE], beside[GZ_PATH_SIZE];
 	const struct gz_log log = make_log();
 	fill_sample(&sample);
-	name_file("no-such-folder/ball.ply", input);
+	sample.key.bytes[0] ^= 2;
+	name_file("other.ply", input);
+	name_file("other.ply.sample", beside);
 	const struct gz_mesh_cache_place place = { input, "sample" };
 	assert_int_equal(gz_mesh_cache_store(&place, &sample.key, sample.arrays, 2, &log), GZ_OK);
+	assert_int_equal(access(beside, F_OK), -1); /* the input's folder stays as it is */
+	sample.key.bytes[0] ^= 1;
+	block_user_folder();
+	assert_int_equal(gz_mesh_cache_store(&place, &sample.key, sample.arrays, 2, &log), GZ_OK);
+	assert_int_equal(access(beside, R_OK), 0);
 	assert_int_equal(load_into(input, &sample, &log), GZ_OK);
 	check_sample(&sample);
-	assert_int_equal(load_into(NULL, &sample, &log), GZ_OK);
-	check_sample(&sample);
+	assert_int_equal(setenv("XDG_CACHE_HOME", folder, 1), 0);
 	assert_int_equal(log_lines, 0);
 }
 
@@ -250,18 +272,77 @@ static void without_any_folder_one_line_says_so(void **state)
 {
 	(void)state;
 	struct sample sample;
-	char input[GZ_PATH_SIZE], blocked[GZ_PATH_SIZE];
-	const struct gz_log log = make_log();
+	char input[GZ_PATH_SIZE];
+	const char *inputs[] = { input, NULL };
 	fill_sample(&sample);
 	name_file("no-such-folder/ball.ply", input);
-	name_file("a-file", blocked);
-	close(open(blocked, O_CREAT | O_WRONLY, 0600));
-	assert_int_equal(setenv("XDG_CACHE_HOME", blocked, 1), 0);
-	const struct gz_mesh_cache_place place = { input, "sample" };
-	assert_int_equal(gz_mesh_cache_store(&place, &sample.key, sample.arrays, 2, &log),
-			 GZ_ERR_IO);
-	assert_int_equal(log_lines, 1);
+	block_user_folder();
+	for (size_t i = 0; i < 2; i++) {
+		const struct gz_log log = make_log();
+		const struct gz_mesh_cache_place place = { inputs[i], "sample" };
+		assert_int_equal(gz_mesh_cache_store(&place, &sample.key, sample.arrays, 2, &log),
+				 GZ_ERR_IO);
+		assert_int_equal(log_lines, 1);
+	}
 	assert_int_equal(setenv("XDG_CACHE_HOME", folder, 1), 0);
+}
+
+/* Write a file of 100 bytes that was used @p second seconds after the epoch. */
+static void write_used(const char *name, time_t second)
+{
+	char path[GZ_PATH_SIZE];
+	const struct timespec times[2] = { { .tv_sec = second }, { .tv_sec = second } };
+	name_file(name, path);
+	FILE *file = fopen(path, "wb");
+	assert_non_null(file);
+	for (int i = 0; i < 100; i++)
+		fputc('x', file);
+	assert_int_equal(fclose(file), 0);
+	assert_int_equal(utimensat(AT_FDCWD, path, times, 0), 0);
+}
+
+static bool is_there(const char *name)
+{
+	char path[GZ_PATH_SIZE];
+	name_file(name, path);
+	return access(path, F_OK) == 0;
+}
+
+static void files_that_were_not_used_lately_go_first(void **state)
+{
+	(void)state;
+	char trimmed[GZ_PATH_SIZE];
+	name_file("trimmed", trimmed);
+	assert_int_equal(mkdir(trimmed, 0700), 0);
+	write_used("trimmed/b", 2000);
+	write_used("trimmed/a", 3000);
+	write_used("trimmed/d", 1000);
+	write_used("trimmed/c", 4000);
+	gz_mesh_cache_trim(trimmed, 400);
+	assert_true(is_there("trimmed/d"));
+	gz_mesh_cache_trim(trimmed, 250);
+	assert_true(is_there("trimmed/a") && is_there("trimmed/c"));
+	assert_true(!is_there("trimmed/b") && !is_there("trimmed/d"));
+	gz_mesh_cache_trim(trimmed, 0);
+	assert_true(!is_there("trimmed/a") && !is_there("trimmed/c"));
+	gz_mesh_cache_trim("/nowhere", 0);
+}
+
+static void loading_counts_as_use(void **state)
+{
+	(void)state;
+	struct sample sample;
+	unsigned char bytes[FILE_SIZE];
+	char input[GZ_PATH_SIZE], path[GZ_PATH_SIZE];
+	const struct timespec old[2] = { { .tv_sec = 1000 }, { .tv_sec = 1000 } };
+	struct stat status;
+	name_file("ball.ply", input);
+	store_bytes(&sample, bytes);
+	name_kept(&sample, path);
+	assert_int_equal(utimensat(AT_FDCWD, path, old, 0), 0);
+	assert_int_equal(load_into(input, &sample, NULL), GZ_OK);
+	assert_int_equal(stat(path, &status), 0);
+	assert_true(status.st_mtim.tv_sec > 1000);
 }
 
 TEST_SUITE(mesh_cache)
@@ -272,8 +353,10 @@ TEST_SUITE(mesh_cache)
 		cmocka_unit_test(faulty_files_are_refused_with_one_line),
 		cmocka_unit_test(numbers_that_are_not_finite_are_refused),
 		cmocka_unit_test(missing_file_is_not_found_and_not_logged),
-		cmocka_unit_test(users_folder_serves_where_the_input_cannot),
+		cmocka_unit_test(input_folder_serves_where_the_users_cannot),
 		cmocka_unit_test(without_any_folder_one_line_says_so),
+		cmocka_unit_test(files_that_were_not_used_lately_go_first),
+		cmocka_unit_test(loading_counts_as_use),
 	};
 	return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

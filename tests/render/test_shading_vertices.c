@@ -7,34 +7,31 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "kept_files.h"
 #include "mesh_shapes.h"
 #include "render/illustration/shading_vertices.h"
 
-static char folder[64], input[96], file[112];
+static const struct gz_mesh_cache_place place = { NULL, "shading" };
 
 static int make_folder(void **state)
 {
 	(void)state;
-	strcpy(folder, "/tmp/gazecast-vertices-XXXXXX");
-	if (!mkdtemp(folder))
-		return -1;
-	snprintf(input, sizeof input, "%s/ball.ply", folder);
-	snprintf(file, sizeof file, "%s.shading", input);
-	return setenv("XDG_CACHE_HOME", folder, 1);
+	(void)kept_files_open();
+	return 0;
 }
 
 static int remove_folder(void **state)
 {
 	(void)state;
-	unlink(file);
-	return rmdir(folder);
+	kept_files_close();
+	return 0;
 }
 
 static struct gz_shading_vertices make_vertices(const struct gz_mesh *mesh,
-						const struct gz_mesh_cache_place *place)
+						const struct gz_mesh_cache_place *kept_at)
 {
 	struct gz_shading_vertices vertices;
-	assert_int_equal(gz_shading_vertices_make(mesh, place, NULL, NULL, &vertices), GZ_OK);
+	assert_int_equal(gz_shading_vertices_make(mesh, kept_at, NULL, NULL, &vertices), GZ_OK);
 	return vertices;
 }
 
@@ -66,10 +63,9 @@ static void broken_ball_is_shaded_like_a_whole_one(void **state)
 static void file_gives_the_same_numbers_and_only_of_this_mesh(void **state)
 {
 	(void)state;
-	const struct gz_mesh_cache_place place = { input, "shading" };
 	struct gz_mesh mesh = mesh_ball(10, 3);
 	struct gz_shading_vertices first = make_vertices(&mesh, &place);
-	assert_int_equal(access(file, R_OK), 0);
+	assert_int_equal(kept_files_count(), 1);
 	struct gz_shading_vertices second = make_vertices(&mesh, &place);
 	assert_memory_equal(first.normals, second.normals,
 			    GZ_SHADING_LEVELS * mesh.vertex_count * sizeof *first.normals);
@@ -90,7 +86,6 @@ static void file_gives_the_same_numbers_and_only_of_this_mesh(void **state)
 static void file_is_really_read(void **state)
 {
 	(void)state;
-	const struct gz_mesh_cache_place place = { input, "shading" };
 	struct gz_mesh mesh = mesh_ball(10, 1);
 	struct gz_mesh_key key;
 	const size_t count = mesh.vertex_count;

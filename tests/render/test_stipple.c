@@ -9,6 +9,7 @@
 
 #include "base/workers.h"
 #include "drawn_meshes.h"
+#include "kept_files.h"
 #include "render/illustration/cached_points.h"
 #include "render/illustration/stipple_png.h"
 #include "render/illustration/stipple_points.h"
@@ -613,18 +614,15 @@ static void strips_make_the_same_picture_bit_for_bit(void **state)
 	gz_stipple_sheet_free(&sheet);
 }
 
-static void points_are_kept_beside_the_input(void **state)
+static void points_are_kept(void **state)
 {
 	(void)state;
-	char folder[] = "/tmp/gazecast_points_XXXXXX", input[64], kept[80];
 	struct gz_mesh mesh = drawn_mesh(DRAWN_BALL);
 	struct gz_mesh_points made, read, other;
-	assert_non_null(mkdtemp(folder));
-	snprintf(input, sizeof input, "%s/ball.ply", folder);
-	snprintf(kept, sizeof kept, "%s.points", input);
-	const struct gz_mesh_cache_place place = { input, "points" };
+	const struct gz_mesh_cache_place place = { NULL, "points" };
+	(void)kept_files_open();
 	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &made), GZ_OK);
-	assert_int_equal(access(kept, R_OK), 0);
+	assert_int_equal(kept_files_count(), 1);
 	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
 	assert_int_equal(read.count, 500);
 	assert_memory_equal(read.points, made.points, 500 * sizeof *made.points);
@@ -651,8 +649,7 @@ static void points_are_kept_beside_the_input(void **state)
 	gz_mesh_points_free(&made);
 	gz_mesh_points_free(&other);
 	gz_mesh_free(&mesh);
-	unlink(kept);
-	rmdir(folder);
+	kept_files_close();
 }
 
 static void print_is_an_svg_in_millimetres(void **state)
@@ -713,7 +710,7 @@ TEST_SUITE(stipple)
 		cmocka_unit_test(marks_at_the_border_stay_on_the_sheet),
 		cmocka_unit_test(darker_tones_ask_for_denser_discs),
 		cmocka_unit_test(strips_make_the_same_picture_bit_for_bit),
-		cmocka_unit_test(points_are_kept_beside_the_input),
+		cmocka_unit_test(points_are_kept),
 		cmocka_unit_test(print_is_an_svg_in_millimetres),
 		cmocka_unit_test(print_that_cannot_be_written_is_refused),
 	};

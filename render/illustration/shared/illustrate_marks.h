@@ -29,8 +29,7 @@ struct gz_illustrate_marks {
 
 /**
  * Make the marks that a shot needs and that a scene does not have. Larger pictures need more: those
- * that are there stay where they are, and more come between them. Points of files are kept beside
- * them.
+ * that are there stay where they are, and more come between them. Points of files are kept.
  *
  * @param scene  with the vertices of all items
  * @param shot   one whose plan has no pixels needs none

@@ -1,7 +1,9 @@
 #include "render/mesh/cache/mesh_cache.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <openssl/evp.h>
 #include <stdbool.h>
@@ -156,20 +158,24 @@ static bool path_beside_input(const struct gz_mesh_cache_place *place, char path
 	       gz_text_print(path, GZ_PATH_SIZE, "%s.%s", place->input, place->ending) == GZ_OK;
 }
 
+static bool user_cache_folder(char path[GZ_PATH_SIZE])
+{
+	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+	/* Relative ones are to be ignored, says the specification. */
+	if (cache && cache[0] == '/')
+		return gz_text_print(path, GZ_PATH_SIZE, "%s/gazecast/meshes", cache) == GZ_OK;
+	return home && home[0] == '/' &&
+	       gz_text_print(path, GZ_PATH_SIZE, "%s/.cache/gazecast/meshes", home) == GZ_OK;
+}
+
 static bool path_in_user_cache(const struct gz_mesh_cache_place *place,
 			       const struct gz_mesh_key *key, char path[GZ_PATH_SIZE])
 {
-	const char *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-	char hex[2 * GZ_MESH_KEY_SIZE + 1];
+	char folder[GZ_PATH_SIZE], hex[2 * GZ_MESH_KEY_SIZE + 1];
 	for (int i = 0; i < GZ_MESH_KEY_SIZE; i++)
 		(void)gz_text_print(hex + 2 * i, 3, "%02x", key->bytes[i]);
-	/* Relative ones are to be ignored, says the specification. */
-	if (cache && cache[0] == '/')
-		return gz_text_print(path, GZ_PATH_SIZE, "%s/gazecast/meshes/%s.%s", cache, hex,
-				     place->ending) == GZ_OK;
-	return home && home[0] == '/' &&
-	       gz_text_print(path, GZ_PATH_SIZE, "%s/.cache/gazecast/meshes/%s.%s", home, hex,
-			     place->ending) == GZ_OK;
+	return user_cache_folder(folder) &&
+	       gz_text_print(path, GZ_PATH_SIZE, "%s/%s.%s", folder, hex, place->ending) == GZ_OK;
 }
 
 /* Create the folders above a file; where that fails, so will writing the file. */
@@ -249,13 +255,73 @@ enum gz_result gz_mesh_cache_load(const struct gz_mesh_cache_place *place,
 				  const struct gz_log *log)
 {
 	char path[GZ_PATH_SIZE];
-	enum gz_result beside = GZ_ERR_NOT_FOUND;
-	if (path_beside_input(place, path))
-		beside = load_file(path, key, arrays, count, log);
-	if (beside == GZ_OK || !path_in_user_cache(place, key, path))
-		return beside;
+	enum gz_result kept = GZ_ERR_NOT_FOUND;
+	if (path_in_user_cache(place, key, path))
+		kept = load_file(path, key, arrays, count, log);
+	if (kept == GZ_OK)
+		(void)utimensat(AT_FDCWD, path, NULL, 0);
+	if (kept == GZ_OK || !path_beside_input(place, path))
+		return kept;
 	const enum gz_result result = load_file(path, key, arrays, count, log);
-	return result == GZ_ERR_NOT_FOUND ? beside : result;
+	return result == GZ_ERR_NOT_FOUND ? kept : result;
+}
+
+/* ---- trimming ---- */
+
+/* A file of the folder. */
+struct kept_file {
+	struct timespec used;
+	uint64_t bytes;
+	char name[NAME_MAX + 1];
+};
+
+static int compare_use(const void *a, const void *b)
+{
+	const struct timespec *first = &((const struct kept_file *)a)->used;
+	const struct timespec *second = &((const struct kept_file *)b)->used;
+	if (first->tv_sec != second->tv_sec)
+		return first->tv_sec < second->tv_sec ? -1 : 1;
+	return (first->tv_nsec > second->tv_nsec) - (first->tv_nsec < second->tv_nsec);
+}
+
+/* Append a file to the list, if it is one. @return false: no memory */
+static bool list_file(int folder, const char *name, struct kept_file **files, size_t *count)
+{
+	struct stat status;
+	if (fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(status.st_mode))
+		return true;
+	struct kept_file *grown = realloc(*files, (*count + 1) * sizeof *grown);
+	if (!grown)
+		return false;
+	struct kept_file *file = &grown[(*count)++];
+	*files = grown;
+	file->used = status.st_mtim;
+	file->bytes = (uint64_t)status.st_size;
+	(void)gz_text_print(file->name, sizeof file->name, "%s", name);
+	return true;
+}
+
+void gz_mesh_cache_trim(const char *folder, uint64_t bytes_most)
+{
+	DIR *directory = opendir(folder);
+	struct kept_file *files = NULL;
+	size_t count = 0;
+	uint64_t bytes = 0;
+	if (!directory)
+		return;
+	const struct dirent *entry = readdir(directory);
+	while (entry && list_file(dirfd(directory), entry->d_name, &files, &count))
+		entry = readdir(directory);
+	for (size_t i = 0; i < count; i++)
+		bytes += files[i].bytes;
+	if (bytes > bytes_most)
+		qsort(files, count, sizeof *files, compare_use);
+	for (size_t i = 0; i < count && bytes > bytes_most; i++) {
+		(void)unlinkat(dirfd(directory), files[i].name, 0);
+		bytes -= files[i].bytes;
+	}
+	free(files);
+	(void)closedir(directory);
 }
 
 /* ---- writing ---- */
@@ -295,6 +361,30 @@ static enum gz_result store_file(const char *path, const unsigned char *bytes, s
 	return gz_part_file_close(&file, result);
 }
 
+static enum gz_result store_in_user_cache(const char *path, const unsigned char *bytes, size_t size)
+{
+	char folder[GZ_PATH_SIZE];
+	make_cache_folders(path);
+	const enum gz_result result = store_file(path, bytes, size, NULL); /* the input's may do */
+	if (result == GZ_OK && user_cache_folder(folder))
+		gz_mesh_cache_trim(folder, GZ_MESH_CACHE_BYTES);
+	return result;
+}
+
+static enum gz_result store_bytes(const struct gz_mesh_cache_place *place,
+				  const struct gz_mesh_key *key, const unsigned char *bytes,
+				  size_t size, const struct gz_log *log)
+{
+	char path[GZ_PATH_SIZE];
+	if (path_in_user_cache(place, key, path) && store_in_user_cache(path, bytes, size) == GZ_OK)
+		return GZ_OK;
+	if (path_beside_input(place, path))
+		return store_file(path, bytes, size, log);
+	gz_warn(log, "what was computed of a mesh cannot be kept: neither XDG_CACHE_HOME nor HOME "
+		     "names a folder that can be written");
+	return GZ_ERR_IO;
+}
+
 enum gz_result gz_mesh_cache_store(const struct gz_mesh_cache_place *place,
 				   const struct gz_mesh_key *key,
 				   const struct gz_mesh_cache_array *arrays, size_t count,
@@ -302,19 +392,9 @@ enum gz_result gz_mesh_cache_store(const struct gz_mesh_cache_place *place,
 {
 	const size_t size = HEAD_SIZE + count_floats(arrays, count) * sizeof(float);
 	unsigned char *bytes = make_content(key, arrays, count);
-	char path[GZ_PATH_SIZE];
 	if (!bytes)
 		return GZ_ERR_NO_MEM;
-	enum gz_result result = GZ_ERR_IO;
-	if (path_beside_input(place, path))
-		result = store_file(path, bytes, size, NULL); /* the next folder may do */
-	if (result != GZ_OK && path_in_user_cache(place, key, path)) {
-		make_cache_folders(path);
-		result = store_file(path, bytes, size, log);
-	} else if (result != GZ_OK) {
-		gz_warn(log, "%s: what was computed of it cannot be kept: no folder can be written",
-			place->input ? place->input : "the mesh");
-	}
+	const enum gz_result result = store_bytes(place, key, bytes, size, log);
 	free(bytes);
 	return result;
 }

@@ -2,9 +2,11 @@
  * @file
  * Files that keep what was computed of a mesh, so that the next start need not compute it again.
  *
- * A file is beside the input ("liver.ply.shape") or, where that folder cannot be written, in the
- * user's cache folder. It belongs to a key, the hash of the mesh and of what was computed, so a
- * changed input never meets an old file. It holds, little-endian:
+ * A file is in the user's cache folder or, where that cannot be written, beside the input
+ * ("liver.ply.shape"). Folders of data stay as they are that way, also those of packages when root
+ * opens them. The folder keeps at most GZ_MESH_CACHE_BYTES: the files that were used least lately
+ * go. A file belongs to a key, the hash of the mesh and of what was computed, so a changed input
+ * never meets an old file. It holds, little-endian:
  *
  *     8 bytes   "GZMESHC" and a NUL
  *     u32       version of this layout: 1
@@ -20,6 +22,7 @@
 #define GZ_RENDER_MESH_CACHE_MESH_CACHE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/log.h"
 #include "base/result.h"
@@ -27,6 +30,9 @@
 
 /** Bytes of a SHA-256. */
 #define GZ_MESH_KEY_SIZE 32
+
+/** Most bytes of the user's cache folder. Chosen: some twenty meshes of a million triangles. */
+#define GZ_MESH_CACHE_BYTES ((uint64_t)2 << 30)
 
 /** What a file belongs to. */
 struct gz_mesh_key {
@@ -36,7 +42,7 @@ struct gz_mesh_key {
 /** Where the file is. */
 struct gz_mesh_cache_place {
 	const char *input;  /**< the file that the mesh stems from; NULL: none, and the file is in
-				 the user's cache folder */
+				 the user's cache folder or nowhere */
 	const char *ending; /**< of the name, without a dot: "shape". Meshes of one input have
 				 endings of their own: "12.shape" */
 };
@@ -73,7 +79,7 @@ enum gz_result gz_mesh_cache_parse(const char *name, const void *bytes, size_t s
 				   const struct gz_log *log);
 
 /**
- * Read the arrays from the file beside the input or in the user's cache folder.
+ * Read the arrays from the file in the user's cache folder or beside the input. It counts as used.
  *
  * @retval GZ_OK             the arrays are filled
  * @retval GZ_ERR_NOT_FOUND  there is no such file; not logged
@@ -86,9 +92,9 @@ enum gz_result gz_mesh_cache_load(const struct gz_mesh_cache_place *place,
 				  const struct gz_log *log);
 
 /**
- * Write the arrays to the file beside the input; if that cannot be written, to the user's cache
- * folder: gazecast/meshes below $XDG_CACHE_HOME or ~/.cache (XDG Base Directory Specification).
- * The file takes its name when it is complete.
+ * Write the arrays to a file in the user's cache folder: gazecast/meshes below $XDG_CACHE_HOME or
+ * ~/.cache (XDG Base Directory Specification). If that cannot be written, beside the input. The
+ * file takes its name when it is complete.
  *
  * @retval GZ_ERR_IO    neither can be written; logged
  * @retval GZ_ERR_FULL  no space is left; logged
@@ -98,5 +104,11 @@ enum gz_result gz_mesh_cache_store(const struct gz_mesh_cache_place *place,
 				   const struct gz_mesh_key *key,
 				   const struct gz_mesh_cache_array *arrays, size_t count,
 				   const struct gz_log *log);
+
+/**
+ * Remove files of a folder, those first that were used least lately, until the rest have at most
+ * @p bytes_most bytes. Called by gz_mesh_cache_store(); several programs may do so at a time.
+ */
+void gz_mesh_cache_trim(const char *folder, uint64_t bytes_most);
 
 #endif
