@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "render/plan/method.h"
 #include "view/experiment/answers.h"
+#include "view/experiment/staircase.h"
 #include "view/made_experiment.h"
 
 static struct captured_log captured;
@@ -271,6 +272,63 @@ static void answers_are_not_continued_with_another_source_of_the_gaze(void **sta
 	get_up(&desk);
 }
 
+#define STAIRS                                                                            \
+	"[experiment]\nname = sharp\nscene = s.scene\ncorrect = a\ninterval_order = ba\n" \
+	"staircase = b.foveation.acuity_slope\nstaircase_range = 0.01 1\n[trial t]\n"     \
+	"[trial u]\n[block b]\nrepeats = 4\n"
+
+/* Answer as a run does. */
+static void answer_stairs(struct desk *desk, size_t index, bool right, bool late)
+{
+	const struct gz_presentation *presentation = &desk->made.sequence.presentations[index];
+	const struct gz_trial_result result = {
+		.index = index,
+		.presentation = presentation,
+		.answer = late ? -1 : right,
+		.chosen = late ? -1 : !right,
+		.right = right,
+		.frame_ms = NAN,
+		.gaze_loss = NAN,
+	};
+	const struct gz_trial_equipment equipment = { .backend = "cpu" };
+	gz_staircase_place(presentation->condition->staircase);
+	if (!late)
+		gz_staircase_take(presentation->condition->staircase, right);
+	assert_int_equal(gz_answers_write(desk->answers, &result, 0, &equipment), GZ_OK);
+}
+
+static void resumed_staircases_go_on_where_they_were(void **state)
+{
+	(void)state;
+	struct desk desk;
+	struct gz_quest before[2];
+	char cell[256];
+	sit_down(&desk);
+	free_experiment(&desk.made);
+	make_experiment(&desk.made, STAIRS);
+	assert_int_equal(open_answers(&desk, false), GZ_OK);
+	for (size_t i = 0; i < 6; i++)
+		answer_stairs(&desk, i, i != 1 && i != 3, i == 3);
+	gz_answers_close(&desk.answers);
+	cell_of(desk.path, "staircase_value", 0, cell);
+	assert_string_equal(cell, "0.1");
+	cell_of(desk.path, "settings_1", 0, cell);
+	assert_string_equal(cell, "foveation.acuity_slope=0.1");
+	cell_of(desk.path, "response", 3, cell);
+	assert_string_equal(cell, "n/a");
+	for (size_t i = 0; i < 2; i++)
+		before[i] = desk.made.experiment.blocks[0].conditions[i].staircase->quest;
+	assert_int_equal(before[0].trials + before[1].trials, 5);
+	free_experiment(&desk.made);
+	make_experiment(&desk.made, STAIRS);
+	assert_int_equal(open_answers(&desk, true), GZ_OK);
+	assert_int_equal(gz_answers_next(desk.answers), 6);
+	for (size_t i = 0; i < 2; i++)
+		assert_memory_equal(&desk.made.experiment.blocks[0].conditions[i].staircase->quest,
+				    &before[i], sizeof before[i]);
+	get_up(&desk);
+}
+
 static void incomplete_row_is_repeated(void **state)
 {
 	(void)state;
@@ -401,6 +459,7 @@ TEST_SUITE(answers)
 		cmocka_unit_test(existing_file_is_not_changed),
 		cmocka_unit_test(resumed_file_continues_after_its_last_trial),
 		cmocka_unit_test(answers_are_not_continued_with_another_source_of_the_gaze),
+		cmocka_unit_test(resumed_staircases_go_on_where_they_were),
 		cmocka_unit_test(incomplete_row_is_repeated),
 		cmocka_unit_test(answers_of_another_order_cannot_be_resumed),
 		cmocka_unit_test(other_files_are_refused),

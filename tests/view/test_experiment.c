@@ -182,6 +182,32 @@ static const struct {
 	{ HEAD "[trial a]\nintervals = 1\nasks = interval\n",
 	  "/place/e.experiment:6: [trial a] asks: interval, but there is only one; set intervals = "
 	  "2 or asks = answer" },
+	{ HEAD "[trial a]\ncorrect = a\nstaircase = b.foveation.method\n",
+	  "/place/e.experiment:6: [trial a] staircase: b.foveation.method is not a scene key of "
+	  "one "
+	  "number that may have a fraction, as b.foveation.acuity_slope is" },
+	{ HEAD "[trial a]\nstaircase = b.foveation.acuity_slope\n",
+	  "/place/e.experiment:5: [trial a] staircase: needs a correct answer; set correct as "
+	  "well" },
+	{ HEAD "correct = a\n[trial a]\nstaircase = b.foveation.acuity_slope\n",
+	  "/place/e.experiment:5: [trial a] staircase_range: two numbers above 0 are needed, the "
+	  "smaller first" },
+	{ HEAD "correct = a\n[trial a]\nstaircase = b.foveation.acuity_slope\n"
+	       "staircase_range = 0.1 5000\n",
+	  "/place/e.experiment:7: [trial a] staircase_range: foveation.acuity_slope is 0.001 to "
+	  "1" },
+	{ HEAD "correct = a\nstaircase_range = 0.1 1\n[trial a]\n"
+	       "staircase = b.foveation.acuity_slope\nstaircase_start = 0.01\n",
+	  "/place/e.experiment:8: [trial a] staircase_start: 0.01 is outside the range" },
+	{ HEAD "correct = a\nstaircase_range = 0.1 1\n[trial a]\n"
+	       "staircase = b.foveation.acuity_slope\nstaircase_target = 0.5\n",
+	  "/place/e.experiment:8: [trial a] staircase_target: 0.5 cannot be a threshold; it lies "
+	  "between what guessing gives (staircase_gamma) and what blind answers leave "
+	  "(staircase_delta)" },
+	{ HEAD "correct = a\nstaircase_range = 0.1 1\n[trial a]\n"
+	       "staircase = b.foveation.acuity_slope\nstaircase_stop_sd = 0.6\n",
+	  "/place/e.experiment:8: [trial a] staircase_stop_sd: reached before the first trial; it "
+	  "must be less than staircase_sd" },
 	{ HEAD "[trial a]\n[block b]\ntrials = a c\n",
 	  "/place/e.experiment:6: [block b] trials: no [trial c]; correct the name" },
 	{ HEAD "[trial a]\n[trial c]\n[block b]\nrepeats = 1000\n[block d]\nrepeats = 1000\n"

@@ -11,6 +11,7 @@
 
 #include "base/clock.h"
 #include "render/plan/method.h"
+#include "view/experiment/staircase.h"
 
 static const struct gz_condition *condition_of(const struct gz_answer_row *row)
 {
@@ -190,6 +191,14 @@ PRINTER(print_key)
 	print_text_cell(answer ? answer->key_name : NULL, text, size);
 }
 
+PRINTER(print_by)
+{
+	print_text_cell(!answer_of(row)         ? NULL
+			: row->result->by_mouse ? "mouse"
+						: "key",
+			text, size);
+}
+
 PRINTER(print_chosen)
 {
 	int chosen = row->result->chosen;
@@ -212,6 +221,47 @@ PRINTER(print_response_time)
 {
 	const struct gz_trial_result *result = row->result;
 	print_span(result->question_ns, result->answer < 0 ? 0 : result->end_ns, text, size);
+}
+
+PRINTER(print_staircase)
+{
+	const struct gz_staircase *staircase = condition_of(row)->staircase;
+	print_text_cell(staircase ? staircase->setting.key : NULL, text, size);
+}
+
+PRINTER(print_staircase_value)
+{
+	const struct gz_staircase *staircase = condition_of(row)->staircase;
+	print_text_cell(staircase ? staircase->setting.value : NULL, text, size);
+}
+
+/* The estimate after the answer; NULL: there is no staircase. */
+static const struct gz_quest_estimate *estimate_of(const struct gz_answer_row *row,
+						   struct gz_quest_estimate *estimate)
+{
+	const struct gz_staircase *staircase = condition_of(row)->staircase;
+	if (!staircase)
+		return NULL;
+	*estimate = gz_quest_estimate(&staircase->quest);
+	return estimate;
+}
+
+PRINTER(print_threshold)
+{
+	struct gz_quest_estimate estimate;
+	if (estimate_of(row, &estimate))
+		snprintf(text, size, "%.5g", estimate.threshold);
+	else
+		print_none(text, size);
+}
+
+PRINTER(print_threshold_interval)
+{
+	struct gz_quest_estimate estimate;
+	if (estimate_of(row, &estimate))
+		snprintf(text, size, "%.5g to %.5g", estimate.low, estimate.high);
+	else
+		print_none(text, size);
 }
 
 PRINTER(print_frames)
@@ -337,11 +387,16 @@ const struct gz_answer_column gz_answer_columns[] = {
 	{ "interval_2_duration", "From that frame to the next screen.", "s", NULL, false, print_duration_2 },
 	{ "question_onset", "Time the question was shown.", "s", NULL, false, print_question },
 	{ "response", "Name of the answer in the experiment file.", NULL, NULL, false, print_response },
-	{ "response_key", "Key that gave the answer.", NULL, NULL, false, print_key },
+	{ "response_key", "Key of the answer.", NULL, NULL, false, print_key },
+	{ "response_by", "How the answer was given.", NULL, "key: its key | mouse: a click on its button", false, print_by },
 	{ "response_time", "From the question to the answer.", "s", NULL, false, print_response_time },
 	{ "chosen", "Alternative shown in the interval that was chosen.", NULL, "a: alternative a | b: alternative b", false, print_chosen },
 	{ "chosen_method", "Foveation method of that alternative.", NULL, NULL, false, print_chosen_method },
 	{ "correct", "Whether the answer was correct according to the experiment file.", NULL, "0: wrong or too late | 1: correct", false, print_correct },
+	{ "staircase", "Scene key that the staircase varied.", NULL, NULL, true, print_staircase },
+	{ "staircase_value", "Its value in this trial.", NULL, NULL, true, print_staircase_value },
+	{ "threshold", "The staircase's estimate of the threshold after this trial: mean of the posterior of QUEST.", NULL, NULL, false, print_threshold },
+	{ "threshold_interval", "Where the threshold is with a probability of 95 %, by the same posterior.", NULL, NULL, false, print_threshold_interval },
 	{ "frames", "Number of frame times measured in the intervals.", NULL, NULL, false, print_frames },
 	{ "dropped_frames", "Number of display refreshes without a new frame in the intervals.", NULL, NULL, false, print_dropped },
 	{ "median_frame_ms", "Median time between frames in the intervals.", "ms", NULL, false, print_frame_ms },

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "view/experiment/experiment_internal.h"
+#include "view/experiment/staircase.h"
 
 #define GZ_LOG_MODULE "experiment"
 
@@ -25,7 +26,7 @@ struct gz_answers {
 	struct gz_answers_request request;
 	char path[GZ_PATH_SIZE];
 	int fd;
-	size_t done;
+	size_t done, next; /* rows; index of the next trial */
 	int run;
 };
 
@@ -160,12 +161,15 @@ static enum gz_result refuse_line(const struct gz_answers *answers, const struct
 static enum gz_result check_row(struct gz_answers *answers, const struct lines *lines, char *line)
 {
 	char expected[GZ_ANSWER_CELL_SIZE], what[256];
-	if (answers->done == answers->sequence->count)
+	if (answers->next == answers->sequence->count)
 		return refuse_line(answers, lines, "more rows than trials");
 	const struct gz_trial_result result = {
-		.index = answers->done,
-		.presentation = &answers->sequence->presentations[answers->done],
+		.index = answers->next,
+		.presentation = &answers->sequence->presentations[answers->next],
 	};
+	struct gz_staircase *staircase = result.presentation->condition->staircase;
+	bool answered = false, right = false;
+	gz_staircase_place(staircase);
 	const struct gz_answer_row row = answer_row_of(answers, &result, 0, NULL);
 	for (size_t i = 0; i < gz_answer_column_count; i++) {
 		const struct gz_answer_column *column = &gz_answer_columns[i];
@@ -174,6 +178,10 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 			return refuse_line(answers, lines, "a row has too few cells");
 		if (strcmp(column->name, "run") == 0 && atoi(cell) >= answers->run)
 			answers->run = atoi(cell) + 1;
+		if (strcmp(column->name, "response") == 0)
+			answered = strcmp(cell, "n/a") != 0;
+		if (strcmp(column->name, "correct") == 0)
+			right = strcmp(cell, "1") == 0;
 		if (!column->identity)
 			continue;
 		column->print(&row, expected, sizeof expected);
@@ -183,7 +191,10 @@ static enum gz_result check_row(struct gz_answers *answers, const struct lines *
 			 column->name, cell, expected);
 		return refuse_line(answers, lines, what);
 	}
+	if (answered)
+		gz_staircase_take(staircase, right);
 	answers->done++;
+	answers->next = gz_sequence_next(answers->sequence, answers->next + 1);
 	return line ? refuse_line(answers, lines, "a row has too many cells") : GZ_OK;
 }
 
@@ -257,7 +268,7 @@ static enum gz_result resume_answers(struct gz_answers *answers)
 		result = read_lines(answers, &lines);
 	if (result == GZ_OK)
 		result = check_lines(answers, &lines);
-	if (result == GZ_OK && answers->done == answers->sequence->count) {
+	if (result == GZ_OK && answers->next == answers->sequence->count) {
 		gz_err(answers->log, "%s: all %zu trials are answered; start another --session",
 		       answers->path, answers->done);
 		result = GZ_ERR_BUSY;
@@ -358,6 +369,11 @@ size_t gz_answers_done(const struct gz_answers *answers)
 	return answers->done;
 }
 
+size_t gz_answers_next(const struct gz_answers *answers)
+{
+	return answers->next;
+}
+
 const char *gz_answers_file(const struct gz_answers *answers)
 {
 	return answers->path;
@@ -376,7 +392,10 @@ enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_tria
 	gz_text_add(&text, "\n");
 	const enum gz_result written = append_row(answers, &text);
 	gz_text_free(&text);
-	answers->done += written == GZ_OK;
+	if (written == GZ_OK) {
+		answers->done++;
+		answers->next = gz_sequence_next(answers->sequence, result->index + 1);
+	}
 	return written;
 }
 

@@ -24,7 +24,7 @@ struct gz_answers_request {
 	const char *place; /**< a folder, or a file that ends in ".tsv" */
 	const char *participant;
 	const char *session; /**< may be empty */
-	bool resume;         /**< continue an existing file */
+	bool resume;         /**< continue an existing file; its staircases take the answers */
 	const char *version; /**< of the program */
 	/** Where the gaze comes from: "daemon", "mouse", "pointer", "fixed" or "log". A file is not
 	 *  continued with another one. */
@@ -71,8 +71,12 @@ enum gz_result gz_answers_open(const struct gz_experiment *experiment,
 			       const struct gz_answers_request *request, const struct gz_log *log,
 			       struct gz_answers **out_answers);
 
-/** Number of trials in the file, which is the index of the next trial. */
+/** Number of trials in the file. */
 size_t gz_answers_done(const struct gz_answers *answers);
+
+/** Index of the next trial to show; that of the sequence's end when all are answered. A staircase
+ *  that is finished early leaves its last trials out. */
+size_t gz_answers_next(const struct gz_answers *answers);
 
 /** Path of the file. */
 const char *gz_answers_file(const struct gz_answers *answers);

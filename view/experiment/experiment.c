@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "view/experiment/experiment_internal.h"
+#include "view/experiment/staircase.h"
 #include "view/settings/scene_keys.h"
 
 #define GZ_LOG_MODULE "experiment"
@@ -102,6 +103,8 @@ static void free_sections(struct gz_experiment_section *sections, size_t count)
 void gz_experiment_free(struct gz_experiment *experiment)
 {
 	for (size_t i = 0; i < experiment->block_count; i++) {
+		for (size_t k = 0; k < experiment->blocks[i].condition_count; k++)
+			free(experiment->blocks[i].conditions[k].staircase);
 		free(experiment->blocks[i].conditions);
 		free(experiment->blocks[i].instructions);
 	}
@@ -244,6 +247,21 @@ static enum gz_result check_alternative(struct check *check, struct gz_alternati
 	return result;
 }
 
+/* A staircase's alternative, at both ends of its range. */
+static enum gz_result check_values(struct check *check, struct gz_alternative *alternative)
+{
+	struct gz_staircase *staircase = check->condition->staircase;
+	if (!staircase)
+		return check_alternative(check, alternative);
+	enum gz_result result = GZ_OK;
+	for (int end = 0; end < 2 && result == GZ_OK; end++) {
+		gz_staircase_go_to_end(staircase, end);
+		result = check_alternative(check, alternative);
+	}
+	gz_staircase_place(staircase);
+	return result;
+}
+
 enum gz_result gz_experiment_check(struct gz_experiment *experiment, const struct gz_log *log)
 {
 	enum gz_result result = GZ_OK;
@@ -254,7 +272,7 @@ enum gz_result gz_experiment_check(struct gz_experiment *experiment, const struc
 			for (int which = 0; which < condition->params.intervals && result == GZ_OK;
 			     which++) {
 				struct check check = { experiment, log, condition, which, "" };
-				result = check_alternative(&check, &condition->alternatives[which]);
+				result = check_values(&check, &condition->alternatives[which]);
 			}
 		}
 	}

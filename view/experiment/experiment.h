@@ -59,6 +59,9 @@ enum gz_experiment_block_order {
 	GZ_BLOCKS_ROTATED, /**< participant n starts with block n: a Latin square */
 };
 
+/** Which values of a staircase's setting are answered right more often. */
+enum gz_experiment_easier { GZ_EASIER_GREATER, GZ_EASIER_SMALLER };
+
 /** Whether gaze is required. */
 enum gz_experiment_gaze { GZ_GAZE_OPTIONAL, GZ_GAZE_REQUIRED };
 
@@ -79,6 +82,13 @@ struct gz_trial_params {
 	char feedback_correct[GZ_INI_LINE_SIZE];
 	char feedback_wrong[GZ_INI_LINE_SIZE];
 	char feedback_late[GZ_INI_LINE_SIZE];
+	char staircase[GZ_INI_LINE_SIZE]; /**< scene key that varies; empty: no staircase */
+	double staircase_range[2];
+	double staircase_start; /**< 0: the middle of the range */
+	double staircase_sd;    /**< decades */
+	int staircase_easier;   /**< enum gz_experiment_easier */
+	double staircase_beta, staircase_delta, staircase_gamma, staircase_target;
+	double staircase_stop_sd; /**< decades; 0: never */
 };
 
 /** Table over struct gz_trial_params; its keys have no section. */
@@ -112,6 +122,7 @@ struct gz_experiment_params {
 	char instructions[GZ_INI_LINE_SIZE];
 	char instructions_file[GZ_INI_LINE_SIZE];
 	char goodbye[GZ_INI_LINE_SIZE];
+	bool buttons;        /**< show buttons for the mouse */
 	double ground[3];    /**< background between pictures: red, green, blue, 0 to 1 */
 	double text_size;    /**< height of a line of text, as a fraction of the picture's */
 	double fixation_deg; /**< width of the cross */
@@ -147,6 +158,8 @@ struct gz_answer {
 	char name[GZ_EXPERIMENT_LABEL_SIZE];
 };
 
+struct gz_staircase;
+
 /** A trial in a block. */
 struct gz_condition {
 	char label[GZ_EXPERIMENT_LABEL_SIZE]; /**< of the trial */
@@ -157,6 +170,8 @@ struct gz_condition {
 	size_t answer_count;
 	/** The correct alternative (asks INTERVAL) or answer (asks ANSWER); -1: none. */
 	int correct;
+	/** What varies from trial to trial: staircase.h. NULL: nothing. A run changes it. */
+	struct gz_staircase *staircase;
 };
 
 /** A group of trials. */

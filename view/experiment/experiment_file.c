@@ -13,6 +13,7 @@ static const char *const asks_names[] = { "auto", "interval", "answer", NULL };
 static const char *const interval_order_names[] = { "balanced", "random", "ab", "ba", NULL };
 static const char *const order_names[] = { "random", "full_random", "listed", NULL };
 static const char *const block_order_names[] = { "listed", "random", "rotated", NULL };
+static const char *const easier_names[] = { "greater", "smaller", NULL };
 static const char *const gaze_names[] = { "optional", "required", NULL };
 
 #define AT(field) offsetof(struct gz_trial_params, field)
@@ -58,6 +59,26 @@ const struct gz_option gz_trial_options[] = {
 	  .preset = "Wrong", .help = "text after a wrong answer" },
 	{ "feedback_late", GZ_OPTION_STRING, AT(feedback_late), .max = GZ_INI_LINE_SIZE,
 	  .preset = "Too late", .help = "text when the wait for an answer has ended" },
+	{ "staircase", GZ_OPTION_STRING, AT(staircase), .max = GZ_INI_LINE_SIZE, .preset = "",
+	  .help = "scene key that QUEST varies, as in b.foveation.acuity_slope; empty: none" },
+	{ "staircase_range", GZ_OPTION_DOUBLE, AT(staircase_range), 0, 1e9, .count = 2,
+	  .preset = "0 0", .help = "least and greatest value of that key" },
+	{ "staircase_start", GZ_OPTION_DOUBLE, AT(staircase_start), 0, 1e9, .preset = "0",
+	  .help = "guessed threshold, which the first trial shows; 0: the middle of the range" },
+	{ "staircase_sd", GZ_OPTION_DOUBLE, AT(staircase_sd), 0.01, 100, .preset = "0.5",
+	  .help = "standard deviation of that guess, decades" },
+	{ "staircase_easier", GZ_OPTION_CHOICE, AT(staircase_easier), .choices = easier_names,
+	  .preset = "greater", .help = "which values are answered right more often" },
+	{ "staircase_beta", GZ_OPTION_DOUBLE, AT(staircase_beta), 0.1, 100, .preset = "3.5",
+	  .help = "slope of the psychometric function over the logarithm of the value" },
+	{ "staircase_delta", GZ_OPTION_DOUBLE, AT(staircase_delta), 0, 0.5, .preset = "0.01",
+	  .help = "share of answers that are blind guesses" },
+	{ "staircase_gamma", GZ_OPTION_DOUBLE, AT(staircase_gamma), 0, 0.99, .preset = "0.5",
+	  .help = "share of right answers by guessing: 0.5 with two answers" },
+	{ "staircase_target", GZ_OPTION_DOUBLE, AT(staircase_target), 0.01, 0.99, .preset = "0.82",
+	  .help = "share of right answers at the threshold" },
+	{ "staircase_stop_sd", GZ_OPTION_DOUBLE, AT(staircase_stop_sd), 0, 10, .preset = "0",
+	  .help = "no more trials once the threshold is known so well, decades; 0: all repeats" },
 };
 
 const size_t gz_trial_option_count = sizeof gz_trial_options / sizeof gz_trial_options[0];
@@ -112,6 +133,8 @@ const struct gz_option gz_experiment_options[] = {
 	{ "goodbye", GZ_OPTION_STRING, AT(goodbye), .max = GZ_INI_LINE_SIZE,
 	  .preset = "That was all. Thank you.\\nPress Space to finish.",
 	  .help = "text shown last; empty: none" },
+	{ "buttons", GZ_OPTION_BOOL, AT(buttons), .preset = "yes",
+	  .help = "show the mouse and a button for each answer; no: keys only" },
 	{ "ground", GZ_OPTION_DOUBLE, AT(ground), 0, 1, .count = 3, .preset = "0.5 0.5 0.5",
 	  .help = "red, green, blue of the screen between pictures" },
 	{ "text_size", GZ_OPTION_DOUBLE, AT(text_size), 0.005, 0.2, .preset = "0.035",

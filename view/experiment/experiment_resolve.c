@@ -1,6 +1,7 @@
 /* Builds conditions from the sections of an experiment file: collects the settings of each trial in
  * each block and checks them against each other. */
 #include <fnmatch.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,8 @@
 #include "base/text.h"
 #include "view/experiment/experiment.h"
 #include "view/experiment/experiment_internal.h"
+#include "view/experiment/staircase.h"
+#include "view/settings/scene_keys.h"
 
 #define GZ_LOG_MODULE "experiment"
 
@@ -271,6 +274,130 @@ static enum gz_result check_second(const struct maker *maker)
 	return GZ_OK;
 }
 
+/* Skip the prefix of a staircase's key. @return its alternative; -1: both */
+static int take_prefix(const char **key)
+{
+	const int which = (*key)[0] - 'a';
+	if ((which != 0 && which != 1) || (*key)[1] != '.')
+		return -1;
+	*key += 2;
+	return which;
+}
+
+/* The key must be a number of a scene, whose limits hold the range. */
+static enum gz_result check_varied_key(const struct maker *maker, const char *key)
+{
+	const double *range = maker->condition->params.staircase_range;
+	struct gz_scene_settings *settings = calloc(1, sizeof *settings);
+	struct gz_view_scene_tables tables;
+	if (!settings)
+		return GZ_ERR_NO_MEM;
+	gz_view_pick_scene_tables(settings, &tables);
+	const struct gz_option *option =
+		gz_options_find(tables.bindings, GZ_VIEW_SCENE_TABLES, key, NULL);
+	free(settings);
+	if (!option || option->type != GZ_OPTION_DOUBLE || gz_option_count(option) != 1)
+		return refuse_trial(maker, "staircase",
+				    "%.60s is not a scene key of one number that may have a "
+				    "fraction, as b.foveation.acuity_slope is",
+				    maker->condition->params.staircase);
+	if (!(range[0] > 0 && range[1] > range[0]))
+		return refuse_trial(maker, "staircase_range",
+				    "two numbers above 0 are needed, the smaller first");
+	if (range[0] < option->min || range[1] > option->max)
+		return refuse_trial(maker, "staircase_range", "%s is %g to %g", key, option->min,
+				    option->max);
+	return GZ_OK;
+}
+
+/* Let the alternative show what the staircase asks for. */
+static enum gz_result vary_alternative(const struct maker *maker, int which)
+{
+	struct gz_alternative *alternative = &maker->condition->alternatives[which];
+	const struct gz_experiment_setting *setting = &maker->condition->staircase->setting;
+	size_t at = 0;
+	while (at < alternative->setting_count &&
+	       strcmp(alternative->settings[at]->key, setting->key) != 0)
+		at++;
+	if (at == GZ_EXPERIMENT_SETTINGS_MAX)
+		return refuse_trial(maker, "staircase",
+				    "more than 64 scene keys; put them into a scene");
+	alternative->settings[at] = setting;
+	alternative->setting_count += at == alternative->setting_count;
+	return GZ_OK;
+}
+
+static struct gz_quest_params quest_params_of(const struct gz_trial_params *params)
+{
+	const double *range = params->staircase_range;
+	return (struct gz_quest_params) {
+		.from = range[0],
+		.to = range[1],
+		.falling = params->staircase_easier == GZ_EASIER_SMALLER,
+		.start = params->staircase_start > 0 ? params->staircase_start
+						     : sqrt(range[0] * range[1]),
+		.sd = params->staircase_sd,
+		.beta = params->staircase_beta,
+		.delta = params->staircase_delta,
+		.gamma = params->staircase_gamma,
+		.target = params->staircase_target,
+	};
+}
+
+static enum gz_result begin_staircase(const struct maker *maker)
+{
+	struct gz_condition *condition = maker->condition;
+	struct gz_staircase *staircase = condition->staircase;
+	const struct gz_quest_params params = quest_params_of(&condition->params);
+	staircase->stop_sd = condition->params.staircase_stop_sd;
+	if (params.start < params.from || params.start > params.to)
+		return refuse_trial(maker, "staircase_start", "%g is outside the range",
+				    params.start);
+	if (gz_quest_begin(&staircase->quest, &params) != GZ_OK)
+		return refuse_trial(maker, "staircase_target",
+				    "%g cannot be a threshold; it lies between what guessing gives "
+				    "(staircase_gamma) and what blind answers leave "
+				    "(staircase_delta)",
+				    params.target);
+	if (gz_staircase_finished(staircase))
+		return refuse_trial(maker, "staircase_stop_sd",
+				    "reached before the first trial; it must be less than "
+				    "staircase_sd");
+	gz_staircase_place(staircase);
+	return GZ_OK;
+}
+
+static enum gz_result take_staircase(const struct maker *maker)
+{
+	struct gz_condition *condition = maker->condition;
+	const char *key = condition->params.staircase;
+	if (!key[0])
+		return GZ_OK;
+	const int which = take_prefix(&key);
+	if (condition->correct < 0)
+		return refuse_trial(maker, "staircase",
+				    "needs a correct answer; set correct as well");
+	if (which >= condition->params.intervals)
+		return refuse_trial(maker, "staircase", "b is not shown, as intervals = 1");
+	enum gz_result result = check_varied_key(maker, key);
+	if (result != GZ_OK)
+		return result;
+	condition->staircase = calloc(1, sizeof *condition->staircase);
+	if (!condition->staircase)
+		return GZ_ERR_NO_MEM;
+	const struct gz_experiment_setting *given = find_setting(maker, "staircase", -1);
+	condition->staircase->setting = (struct gz_experiment_setting) {
+		.alternative = which,
+		.of_scene = true,
+		.line = given->line,
+	};
+	memcpy(condition->staircase->setting.key, key, strlen(key) + 1);
+	for (int i = 0; i < condition->params.intervals && result == GZ_OK; i++)
+		if (which < 0 || i == which)
+			result = vary_alternative(maker, i);
+	return result == GZ_OK ? begin_staircase(maker) : result;
+}
+
 static enum gz_result make_condition(const struct maker *maker)
 {
 	enum gz_result result = take_params(maker);
@@ -285,7 +412,9 @@ static enum gz_result make_condition(const struct maker *maker)
 		result = check_asks(maker);
 	if (result == GZ_OK)
 		result = take_answers(maker);
-	return result == GZ_OK ? take_correct(maker) : result;
+	if (result == GZ_OK)
+		result = take_correct(maker);
+	return result == GZ_OK ? take_staircase(maker) : result;
 }
 
 /* An experiment whose blocks are being built. */

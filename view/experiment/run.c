@@ -7,7 +7,7 @@
 
 #include "base/clock.h"
 #include "render/plan/method.h"
-#include "view/experiment/experiment.h"
+#include "view/experiment/staircase.h"
 
 /* Texts before a trial, in order. */
 enum page { PAGE_INSTRUCTIONS, PAGE_BLOCK, PAGE_BREAK, PAGE_NONE };
@@ -93,8 +93,10 @@ static void clear_trial(struct gz_run *run, int restarts)
 /* Start the current trial with the texts before it, or finish the experiment. */
 static void begin_trial(struct gz_run *run, int64_t now_ns)
 {
+	run->index = gz_sequence_next(run->sequence, run->index);
 	clear_trial(run, 0);
 	if (presentation_of(run)) {
+		gz_staircase_place(presentation_of(run)->condition->staircase);
 		turn_page(run, PAGE_INSTRUCTIONS);
 		return;
 	}
@@ -155,8 +157,12 @@ static void finish_trial(struct gz_run *run, int answer, int64_t now_ns)
 	struct gz_trial_result *trial = &run->trial;
 	const struct gz_condition *condition = trial->presentation->condition;
 	trial->answer = answer;
+	trial->by_mouse = run->clicked;
 	trial->end_ns = now_ns;
 	judge_answer(run);
+	/* An answer that did not come says nothing about the value. */
+	if (answer >= 0)
+		gz_staircase_take(condition->staircase, trial->right == 1);
 	trial->frames = run->frames.count;
 	trial->dropped = run->frames.dropped;
 	trial->frame_ms = median_ms(&run->frames);
@@ -495,6 +501,14 @@ bool gz_run_key(struct gz_run *run, int key, int64_t now_ns)
 	return run->phase == GZ_RUN_QUESTION && key_in_question(run, key, now_ns);
 }
 
+bool gz_run_click(struct gz_run *run, int key, int64_t now_ns)
+{
+	run->clicked = true;
+	const bool changed = gz_run_key(run, key, now_ns);
+	run->clicked = false;
+	return changed;
+}
+
 static const char *feedback_text(const struct gz_run *run)
 {
 	const struct gz_trial_params *params = &run->trial.presentation->condition->params;
@@ -511,6 +525,37 @@ static const char *page_text(const struct gz_run *run)
 	return run->page == PAGE_INSTRUCTIONS ? run->experiment->instructions
 	       : run->page == PAGE_BLOCK      ? presentation->block->instructions
 					      : presentation->block->params.break_text;
+}
+
+static void add_choice(struct gz_run_screen *screen, int key, const char *name,
+		       const char *key_name)
+{
+	screen->choices[screen->choice_count++] = (struct gz_run_choice) { key, name, key_name };
+}
+
+static void offer_answers(const struct gz_condition *condition, struct gz_run_screen *screen)
+{
+	for (size_t i = 0; i < condition->answer_count; i++)
+		add_choice(screen, condition->answers[i].key, condition->answers[i].name,
+			   condition->answers[i].key_name);
+}
+
+static void offer_choices(const struct gz_run *run, struct gz_run_screen *screen)
+{
+	switch (run->phase) {
+	case GZ_RUN_TEXT:
+		add_choice(screen, GZ_KEY_SPACE, run->complete ? "Finish" : "Continue", "Space");
+		return;
+	case GZ_RUN_LEAVING:
+		add_choice(screen, GZ_KEY_SPACE, "Continue", "Space");
+		add_choice(screen, GZ_KEY_ESCAPE, "Leave", "Escape");
+		return;
+	case GZ_RUN_QUESTION:
+		offer_answers(screen->presentation->condition, screen);
+		return;
+	default:
+		return;
+	}
 }
 
 void gz_run_screen(const struct gz_run *run, struct gz_run_screen *out_screen)
@@ -535,5 +580,7 @@ void gz_run_screen(const struct gz_run *run, struct gz_run_screen *out_screen)
 		screen.alternative =
 			&presentation->condition->alternatives[gz_presentation_alternative(
 				presentation, run->interval)];
+	if (run->experiment->params.buttons)
+		offer_choices(run, &screen);
 	*out_screen = screen;
 }

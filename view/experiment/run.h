@@ -1,9 +1,9 @@
 /**
  * @file
  * Runs an experiment: the state machine of texts, cross, intervals, question and feedback, driven
- * by the clock and keys. It knows no window. The caller shows what gz_run_screen() returns, reports
- * with gz_run_shown() when it appeared, passes keys, and calls gz_run_step() each frame. Events
- * come out as marks, and each trial as a result.
+ * by the clock, keys and clicks. It knows no window. The caller shows what gz_run_screen() returns,
+ * reports with gz_run_shown() when it appeared, passes keys, and calls gz_run_step() each frame.
+ * Events come out as marks, and each trial as a result.
  *
  * A trial interrupted by Escape is restarted when the participant continues, and one that requires
  * gaze when there has been none for too long.
@@ -53,6 +53,7 @@ struct gz_trial_result {
 	int64_t question_ns;
 	int64_t end_ns;   /**< of the answer, or the end of the wait for it */
 	int answer;       /**< index into the condition's answers; -1: none in time */
+	bool by_mouse;    /**< the answer was a click */
 	int chosen;       /**< alternative, if the question asks for an interval; otherwise -1 */
 	int right;        /**< 1: correct, 0: wrong or late, -1: no answer is correct */
 	int restarts;     /**< number of interruptions */
@@ -84,6 +85,7 @@ struct gz_run {
 	int page;               /* which text before a trial */
 	int interval;           /* in INTERVAL and BLANK: 0 or 1 */
 	enum gz_run_phase left; /* LEAVING: the interrupted phase */
+	bool clicked;           /* a click is being handled */
 	bool gaze_missing;      /* FIXATION is extended because gaze is missing */
 	int64_t gaze_missing_ns;
 	int64_t gaze_lost_ns; /* INTERVAL: since when there is no gaze; 0: there is */
@@ -92,6 +94,13 @@ struct gz_run {
 	struct gz_trial_frames frames;
 	struct gz_trial_result trial;
 	enum gz_result result; /**< GZ_ERR_CANCELLED: left; otherwise the result of the sink */
+};
+
+/** What can be answered on a screen: a button, and the key that does the same. */
+struct gz_run_choice {
+	int key;              /**< enum gz_answer_key */
+	const char *name;     /**< name of the answer */
+	const char *key_name; /**< as shown: "1", "Space" */
 };
 
 /** What to show. */
@@ -103,6 +112,9 @@ struct gz_run_screen {
 	const char *text;                           /**< to show in the centre; NULL: none */
 	size_t done, count;                         /**< number of trials done, and of all trials */
 	bool gaze_missing;                          /**< the cross waits for gaze: say so */
+	/** Buttons for the mouse; none if the experiment wants none. */
+	struct gz_run_choice choices[GZ_EXPERIMENT_ANSWERS_MAX];
+	size_t choice_count;
 };
 
 /** Input of a step. */
@@ -139,6 +151,10 @@ bool gz_run_step(struct gz_run *run, const struct gz_run_input *input);
 /** Handle a key press; @p key is an enum gz_answer_key. @return whether gz_run_screen() has changed
  */
 bool gz_run_key(struct gz_run *run, int key, int64_t now_ns);
+
+/** Handle a click on the button of @p key: the same as the key, but an answer says that it was the
+ * mouse. @return whether gz_run_screen() has changed */
+bool gz_run_click(struct gz_run *run, int key, int64_t now_ns);
 
 /** End the run with @p result. Trials that were not answered can be resumed. Does nothing if the
  * run has ended; if all trials are answered, it ends with GZ_OK. */

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "sim/random.h"
 #include "view/experiment/experiment_internal.h"
+#include "view/experiment/staircase.h"
 
 #define GZ_LOG_MODULE "experiment"
 
@@ -182,6 +183,14 @@ enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const ch
 	}
 	*out_sequence = maker.sequence;
 	return GZ_OK;
+}
+
+size_t gz_sequence_next(const struct gz_sequence *sequence, size_t index)
+{
+	while (index < sequence->count &&
+	       gz_staircase_finished(sequence->presentations[index].condition->staircase))
+		index++;
+	return index;
 }
 
 void gz_sequence_free(struct gz_sequence *sequence)

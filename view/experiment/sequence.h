@@ -41,6 +41,10 @@ enum gz_result gz_sequence_make(const struct gz_experiment *experiment, const ch
 				const char *session, const struct gz_log *log,
 				struct gz_sequence *out_sequence);
 
+/** The first presentation from @p index on whose staircase is not finished; the sequence's count if
+ *  there is none. */
+size_t gz_sequence_next(const struct gz_sequence *sequence, size_t index);
+
 /** Free the contents and zero @p sequence. */
 void gz_sequence_free(struct gz_sequence *sequence);
 
