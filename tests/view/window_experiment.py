@@ -146,7 +146,7 @@ class Experiment(WindowCase):
         text = self.until(lambda p: self.whole(p, GROUND) and
                           len({p.at(x, y) for x in range(300, 600) for y in range(300, 400)}) > 1,
                           "instructions")
-        self.assertFalse(cursor_is_seen(self.environment["DISPLAY"]))
+        self.assertTrue(cursor_is_seen(self.environment["DISPLAY"]))
         self.press("space")
         middle = (SCREEN[0] // 2, SCREEN[1] // 2)
         cross = self.until(lambda p: self.whole(p, GROUND) and p.at(*middle) != GROUND and
@@ -155,7 +155,50 @@ class Experiment(WindowCase):
         picture = self.until(lambda p: self.whole(p, BACKGROUND), "picture")
         line = {picture.at(x, y) for x in range(0, 400, 2) for y in range(0, 30, 2)}
         self.assertEqual(line, {BACKGROUND}, "no line of text")
+        self.assertFalse(cursor_is_seen(self.environment["DISPLAY"]))
         self.until(lambda p: self.whole(p, GROUND) and p.at(*middle) == GROUND, "blank")
+
+    def click(self, *share):
+        """A click at a share of the window; xdotool fails if it closes meanwhile."""
+        x, y = (int(share[i] * SCREEN[i]) for i in (0, 1))
+        run("xdotool", "mousemove", str(x), str(y), "click", "1", env=self.environment)
+
+    def answer_by_clicks(self, done, *places):
+        deadline = time.monotonic() + 2 * PATIENCE_S
+        while not done():
+            self.assertLess(time.monotonic(), deadline, "never came: %r" % self.rows())
+            for place in places:
+                self.click(*place)
+
+    def test_mouse_alone_answers_a_staircase_that_ends_early_and_goes_on(self):
+        self.write(repeats=30, staircase="b.foveation.acuity_slope",
+                   staircase_range="0.01 0.5", staircase_sd="0.3", staircase_stop_sd="0.29",
+                   interval_order="ab", fixation_s="0", duration_s="0.02", blank_s="0",
+                   pause_s="0")
+        self.begin("--gaze", "0.5,0.5")
+        # Continue and Finish are in the middle, the first of two answers left of it.
+        self.answer_by_clicks(lambda: self.rows(), (0.5, 0.78), (0.43, 0.78))
+        self.viewer.terminate()
+        self.viewer.communicate(timeout=PATIENCE_S)
+        kept = self.rows()
+        self.begin("--gaze", "0.5,0.5", "--resume")
+        self.answer_by_clicks(self.ended, (0.5, 0.78), (0.43, 0.78))
+        self.finish(0)
+        rows = self.rows()
+        self.assertEqual(rows[:len(kept)], kept)
+        self.assertLess(len(rows), 60)
+        for label in ("fine", "coarse"):
+            those = [row for row in rows if row["trial_type"] == label]
+            self.assertEqual(those[0]["staircase"], "foveation.acuity_slope")
+            self.assertAlmostEqual(float(those[0]["staircase_value"]), 0.0707, delta=0.001)
+            for row in those:
+                self.assertEqual((row["response"], row["response_by"], row["correct"]),
+                                 ("first", "mouse", "1"))
+                self.assertIn("foveation.acuity_slope=" + row["staircase_value"],
+                              row["settings_2"])
+                self.assertGreaterEqual(float(row["response_time"]), 0)
+            values = [float(row["staircase_value"]) for row in those]
+            self.assertEqual(values, sorted(values, reverse=True), "right answers: harder")
 
     def recorded_marks(self):
         names = [name for name in os.listdir(self.folder) if name.endswith(".gzl")]

@@ -102,7 +102,7 @@ static void begin_trials(struct gz_window *window)
 		.sequence = &sitting->sequence,
 		.participant = sitting->options->participant,
 		.session = sitting->options->session,
-		.first = gz_answers_done(sitting->answers),
+		.first = gz_answers_next(sitting->answers),
 		.sink = { .user = window, .mark = mark_in_log, .over = write_answer },
 	};
 	gz_run_begin(&state->run, &start);
@@ -136,7 +136,7 @@ static enum gz_result open_experiment(struct gz_window *window)
 	return r;
 }
 
-/* Full screen, without a cursor, also when the window loses the focus. */
+/* Full screen, also when the window loses the focus. */
 static enum gz_result open_experiment_window(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
@@ -144,6 +144,7 @@ static enum gz_result open_experiment_window(struct gz_window *window)
 		return GZ_OK;
 	gz_widgets_leave_cursor();
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+	state->pointer_hidden = true;
 	glfwSetDropCallback(window->glfw, NULL); /* files cannot be dropped */
 	glfwSetWindowAttrib(window->glfw, GLFW_AUTO_ICONIFY, GLFW_FALSE);
 	if (!state->placed && !window->options->target.windowed)
@@ -256,6 +257,38 @@ static int64_t frame_duration_ns(struct gz_window_experiment *state, int64_t now
 	return usual_ns > state->refresh_ns ? usual_ns : state->refresh_ns;
 }
 
+static struct gz_place pointer_of(const struct gz_window *window)
+{
+	return (struct gz_place) { (float)window->cursor[0], (float)window->cursor[1] };
+}
+
+/* The button of the present screen below the mouse; -1: none. */
+static int button_below(const struct gz_window *window)
+{
+	const struct gz_window_experiment *state = window->experiment;
+	return state->button_phase == state->run.phase
+		       ? gz_experiment_button_at(state->buttons, state->button_count,
+						 pointer_of(window))
+		       : -1;
+}
+
+/* Show the mouse cursor where there is something to click, never over a picture. */
+static void follow_pointer(struct gz_window *window)
+{
+	struct gz_window_experiment *state = window->experiment;
+	struct gz_run_screen screen;
+	gz_run_screen(&state->run, &screen);
+	const bool hidden = screen.choice_count == 0;
+	if (hidden != state->pointer_hidden)
+		glfwSetInputMode(window->glfw, GLFW_CURSOR,
+				 hidden ? GLFW_CURSOR_HIDDEN : GLFW_CURSOR_NORMAL);
+	state->pointer_hidden = hidden;
+	const int bright = button_below(window);
+	if (bright != state->button_bright)
+		window->present_needed = true;
+	state->button_bright = bright;
+}
+
 static void step_experiment(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
@@ -269,6 +302,7 @@ static void step_experiment(struct gz_window *window)
 	if (gz_run_step(&state->run, &input))
 		window->present_needed = true;
 	choose_trial_picture(window);
+	follow_pointer(window);
 	tell_missing_gaze(window);
 	/* In an interval every refresh is a frame, so that missed ones are seen in the times
 	 * between frames. */
@@ -347,6 +381,22 @@ static float cross_width(const struct gz_window *window)
 	return (float)(px * gz_widgets_room().x / fmax(1, width));
 }
 
+static void draw_buttons(struct gz_window *window, const struct gz_experiment_look *look,
+			 const struct gz_run_screen *screen)
+{
+	struct gz_window_experiment *state = window->experiment;
+	const struct gz_place mouse = pointer_of(window);
+	state->button_phase = screen->phase;
+	state->button_count = screen->choice_count;
+	for (size_t i = 0; i < screen->choice_count; i++) {
+		state->buttons[i].name = screen->choices[i].name;
+		state->buttons[i].key = screen->choices[i].key_name;
+		state->button_keys[i] = screen->choices[i].key;
+	}
+	gz_experiment_screen_buttons(look, state->buttons, state->button_count,
+				     window->cursor_inside ? &mouse : NULL);
+}
+
 static void draw_experiment_screen(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_window_experiment *state = window->experiment;
@@ -375,6 +425,7 @@ static void draw_experiment_screen(struct gz_window *window, const struct gz_win
 		snprintf(note, sizeof note, "%zu of %zu", screen.done, screen.count);
 		gz_experiment_screen_note(&look, note);
 	}
+	draw_buttons(window, &look, &screen);
 	const double share = gz_experiment_loaded_share(state);
 	if (share < 1 && (screen.phase == GZ_RUN_TEXT || screen.phase == GZ_RUN_PREPARE))
 		gz_experiment_screen_bar(&look, share);
@@ -451,6 +502,15 @@ static bool answer_by_key(struct gz_window *window, int key, int scancode, bool 
 	return true;
 }
 
+static void answer_by_mouse(struct gz_window *window, int button)
+{
+	struct gz_window_experiment *state = window->experiment;
+	const int pressed = button == GLFW_MOUSE_BUTTON_LEFT ? button_below(window) : -1;
+	if (pressed >= 0 &&
+	    gz_run_click(&state->run, state->button_keys[pressed], gz_clock_now_ns()))
+		window->present_needed = true;
+}
+
 enum gz_result gz_window_experiment_outcome(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
@@ -459,9 +519,9 @@ enum gz_result gz_window_experiment_outcome(struct gz_window *window)
 	const struct gz_answers *answers = state->sitting->answers;
 	gz_run_stop(&state->run, GZ_ERR_CANCELLED, gz_clock_now_ns());
 	const size_t done = gz_answers_done(answers), count = state->sitting->sequence.count;
-	if (done == count)
+	if (gz_answers_next(answers) == count)
 		gz_info(window->log, "%s: all %zu trials are answered", gz_answers_file(answers),
-			count);
+			done);
 	else if (done > 0)
 		gz_info(window->log, "%s: %zu of %zu trials are answered; --resume continues",
 			gz_answers_file(answers), done, count);
@@ -495,5 +555,6 @@ const struct gz_window_part gz_window_experiment_part = {
 	.presented = note_presented,
 	.patience_s = experiment_patience_s,
 	.key = answer_by_key,
+	.press = answer_by_mouse,
 	.close = close_experiment,
 };

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "view/experiment/sitting.h"
+#include "view/panels/experiment_screen.h"
 #include "view/window/loading.h"
 
 /** A scene of the experiment. */
@@ -43,6 +44,13 @@ struct gz_window_experiment {
 	bool absence_told; /**< the missing gaze was logged */
 	double px_per_deg; /**< of the framebuffer */
 	bool placed;       /**< the window is in full screen */
+	/** The buttons that are on the screen, their keys, and of which phase. */
+	struct gz_experiment_button buttons[GZ_EXPERIMENT_ANSWERS_MAX];
+	int button_keys[GZ_EXPERIMENT_ANSWERS_MAX];
+	size_t button_count;
+	enum gz_run_phase button_phase;
+	int button_bright;   /**< the one below the mouse; -1: none */
+	bool pointer_hidden; /**< the mouse cursor is not shown */
 };
 
 /** Load scenes of the next trials. @return GZ_OK; else why a scene of the present trial cannot be

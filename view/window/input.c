@@ -173,6 +173,8 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 	gz_window_wake_panels(window);
 	if (action == GLFW_RELEASE)
 		release_mouse(window, button, modifiers_of(mods));
+	if (action == GLFW_PRESS && window->alone && window->alone->press)
+		window->alone->press(window, button);
 	if (action != GLFW_PRESS || window->alone || window->grabber || !window->maker ||
 	    panels_have_mouse(window))
 		return;

@@ -117,6 +117,9 @@ struct gz_window_part {
 	/** A key of GLFW was pressed. Only of the part that has the window to itself
 	 *  (window->alone). @return whether the part takes the key */
 	bool (*key)(struct gz_window *window, int key, int scancode, bool repeated);
+	/** A button of the mouse was pressed at window->cursor. Only of the part that has the
+	 *  window to itself. */
+	void (*press)(struct gz_window *window, int button);
 	/** Longest time until the next turn, s, if no event comes before; INFINITY: any. */
 	double (*patience_s)(const struct gz_window *window);
 	/** The OpenGL context is about to go: delete what lives in it. Correct after a failed
