@@ -299,6 +299,19 @@ static enum gz_result check_technique(const struct gz_scene_settings *settings, 
 	return GZ_OK;
 }
 
+static bool distances_valid(const struct gz_scene_settings *settings, const char *name,
+			    const struct gz_log *log)
+{
+	struct gz_distances distances;
+	if (gz_distances_parse(settings->view.distances, &distances))
+		return true;
+	gz_err(log,
+	       "%s: view.distances: write six numbers from 0 to 1 a line, x y z of either end; up "
+	       "to %d lines",
+	       name, GZ_DISTANCES_MAX);
+	return false;
+}
+
 enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings, const char *name,
 				       const struct gz_log *log)
 {
@@ -308,7 +321,7 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 		return GZ_ERR_FORMAT;
 	}
 	if (gz_saved_views_check(settings->view.saved, name, log) != GZ_OK ||
-	    check_technique(settings, name, log) != GZ_OK)
+	    !distances_valid(settings, name, log) || check_technique(settings, name, log) != GZ_OK)
 		return GZ_ERR_FORMAT;
 	if (gz_ray_params_valid(&settings->rays)) {
 		if (!gz_camera_up_counts(&settings->camera))

@@ -14,6 +14,10 @@ const char *const gz_view_overlay_names[] = { "none", "spacing", "step", NULL };
 
 const char *const gz_view_compare_names[] = { "none", "split", "difference", NULL };
 
+const char *const gz_view_layout_names[] = { "picture", "slices", NULL };
+
+const char *const gz_view_follows_names[] = { "none", "mouse", "gaze", NULL };
+
 #define AT(field) offsetof(struct gz_view_settings, field)
 
 #define SAVED(number)                                                                    \
@@ -54,6 +58,26 @@ const struct gz_option gz_view_setting_options[] = {
 	  .help = "window: a circle at the gaze in comparisons" },
 	{ "view.refine", GZ_OPTION_BOOL, AT(refine), .preset = "yes",
 	  .help = "window: full quality everywhere once camera and gaze rest for half a second" },
+	{ "view.layout", GZ_OPTION_CHOICE, AT(layout), .choices = gz_view_layout_names,
+	  .preset = "picture",
+	  .help = "window: the picture alone, or beside axial, coronal and sagittal slices" },
+	{ "view.crosshair", GZ_OPTION_DOUBLE, AT(crosshair), 0, 1, 3, .preset = "0.5 0.5 0.5",
+	  .help = "where slices lie, as fractions of the box along x y z" },
+	{ "view.crosshair_follows", GZ_OPTION_CHOICE, AT(crosshair_follows),
+	  .choices = gz_view_follows_names, .preset = "none",
+	  .help = "what moves the crosshair of slices besides clicks: a mouse over a slice, or a "
+		  "gaze that rests there" },
+	{ "view.slice_colours", GZ_OPTION_BOOL, AT(slice_colours), .preset = "no",
+	  .help = "slices: colours of the transfer function over the grey" },
+	{ "view.slice_level", GZ_OPTION_DOUBLE, AT(slice_level), -GZ_SLICE_VALUE_MAX,
+	  GZ_SLICE_VALUE_MAX, .preset = "0",
+	  .help = "slices: value shown as middle grey, if slice_width is above 0" },
+	{ "view.slice_width", GZ_OPTION_DOUBLE, AT(slice_width), 0, GZ_SLICE_VALUE_MAX,
+	  .preset = "0",
+	  .help = "slices: values from black to white; 0 takes level and width from the volume" },
+	{ "view.distances", GZ_OPTION_STRING, AT(distances), .max = GZ_DISTANCES_SIZE, .preset = "",
+	  .help = "lines measured in slices: x y z of either end, as fractions of the box; up to "
+		  "eight lines" },
 	SAVED(1),
 	SAVED(2),
 	SAVED(3),

@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "base/sizes.h"
 #include "render/picture/camera.h"
+#include "render/section/distances.h"
 
 /** What the plan's tiles are tinted by. */
 enum gz_view_overlay {
@@ -35,6 +36,30 @@ enum gz_view_compare {
 
 /** "none", "split", "difference"; NULL-terminated. */
 extern const char *const gz_view_compare_names[];
+
+/** What fills a window. */
+enum gz_view_layout {
+	GZ_LAYOUT_PICTURE,
+	GZ_LAYOUT_SLICES, /**< axial, coronal and sagittal slice, and the picture: a quarter each */
+	GZ_LAYOUT_COUNT,
+};
+
+/** "picture", "slices"; NULL-terminated. */
+extern const char *const gz_view_layout_names[];
+
+/** What moves the crosshair of slices besides clicks and drags. */
+enum gz_view_follows {
+	GZ_FOLLOWS_NONE,
+	GZ_FOLLOWS_MOUSE, /**< the mouse over a slice */
+	GZ_FOLLOWS_GAZE,  /**< a gaze that rests on a slice */
+	GZ_FOLLOWS_COUNT,
+};
+
+/** "none", "mouse", "gaze"; NULL-terminated. */
+extern const char *const gz_view_follows_names[];
+
+/** Greatest view.slice_level and view.slice_width, data values. */
+#define GZ_SLICE_VALUE_MAX 1e9
 
 /** Greatest view.difference_gain: one grey level is shown as a quarter of white. */
 #define GZ_DIFFERENCE_GAIN_MAX 64.0
@@ -62,6 +87,13 @@ struct gz_view_settings {
 	bool frame_times;       /**< the plot of the frame times */
 	bool gaze_mark;         /**< a circle at the gaze in comparisons */
 	bool refine;            /**< the window shows full quality while camera and gaze rest */
+	int layout;             /**< enum gz_view_layout */
+	double crosshair[3];    /**< of slices: fractions of the box along x, y, z */
+	int crosshair_follows;  /**< enum gz_view_follows */
+	bool slice_colours;     /**< those of the transfer function, over grey */
+	double slice_level;     /**< data value of middle grey, if slice_width is above 0 */
+	double slice_width;     /**< data values from black to white; 0: those of the volume */
+	char distances[GZ_DISTANCES_SIZE]; /**< measured in slices: gz_distances_parse() */
 	char saved[GZ_SAVED_VIEWS][GZ_SAVED_VIEW_SIZE]; /**< saved views; empty: none */
 };
 

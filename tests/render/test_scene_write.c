@@ -80,7 +80,8 @@ static void unset(const struct gz_option *option, void *target, int turn)
 		snprintf(field, (size_t)option->max,
 			 strncmp(option->key, "views.", 6) == 0
 				 ? "eye 0 -2 %d look_at 0 0 0 up 0 0 1 height 2"
-				 : "some file %d.x",
+			 : strcmp(option->key, "view.distances") == 0 ? "0.1 0 0 1 1 1e-%d"
+								      : "some file %d.x",
 			 turn);
 		break;
 	case GZ_OPTION_CHOICE:

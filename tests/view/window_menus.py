@@ -178,6 +178,67 @@ class Menus(WindowCase):
         pixels = (picture.at(x, y) for x in range(10, 100) for y in range(60, 250))
         return sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
 
+    def drag(self, start, end, button=1, key=None):
+        """A drag from one place to another, in two moves."""
+        self.move(*start)
+        self.until_idle()
+        if key:
+            self.tool("keydown", key)
+        self.tool("mousedown", button)
+        self.until_idle()
+        for share in (0.5, 1):
+            self.move(*(round(a + share * (b - a)) for a, b in zip(start, end)))
+            self.until_idle()
+        self.tool("mouseup", button)
+        if key:
+            self.tool("keyup", key)
+        self.until_idle()
+
+    def crosses(self, picture):
+        """Columns of the axial slice's and of the coronal slice's crosshair."""
+        def columns(left, right, top, bottom):
+            return [x for x in range(left, right) if 20 < sum(
+                r > 150 and g > 110 and b < 110
+                for r, g, b in (picture.at(x, y) for y in range(top, bottom)))]
+
+        return columns(0, 240, 50, 135), columns(240, 480, 170, 275)
+
+    def test_slices_are_moved_measured_and_saved(self):
+        self.start_own_scene()
+        self.find("sagittal")
+        self.press("Return")
+        shown = self.until(lambda p: all(self.crosses(p)), "slices")
+        middle = self.crosses(shown)
+        # A click in the axial slice moves the coronal slice's crosshair as well.
+        self.click(135, 96)
+        moved = self.until(lambda p: self.crosses(p) != middle, "a moved crosshair")
+        self.assertTrue(self.near(self.crosses(moved)[0][-1:], (135,)), self.crosses(moved))
+        self.assertNotEqual(self.crosses(moved)[1], middle[1])
+        # The wheel leafs through slices, a line is measured, and a right drag sets the window.
+        self.tool("click", 4)
+        self.until(lambda p: p.part(100, 60, 130, 90) != moved.part(100, 60, 130, 90), "next slice")
+        self.drag((105, 96), (135, 96), key="shift")
+        self.drag((120, 90), (160, 90), button=3)
+        keys = dict(line.split(" = ", 1) for line in self.saved() if " = " in line)
+        ends = [float(share) for share in keys["distances"].split()]
+        self.assertEqual(len(ends), 6)
+        self.assertEqual(ends[1:3], ends[4:6])
+        self.assertLess(ends[3], ends[0])  # the right side is on the left
+        self.assertGreater(float(keys["slice_width"]), 0)
+        self.assertEqual(keys["layout"], "slices")
+        crosshair = [float(share) for share in keys["crosshair"].split()]
+        self.assertAlmostEqual(crosshair[0], ends[3], delta=0.02)
+        self.assertAlmostEqual(crosshair[2], ends[2], delta=1e-5)
+        # Undone: the grey window, then the line.
+        self.press("ctrl+z")
+        self.press("ctrl+z")
+        keys = dict(line.split(" = ", 1) for line in self.saved() if " = " in line)
+        self.assertEqual(keys["distances"], "")
+        self.assertEqual(float(keys["slice_width"]), 0)
+        self.press("shift+s")
+        self.until(lambda p: not any(self.crosses(p)) and self.shows_something(p),
+                   "the picture alone")
+
     def test_start_window_opens_a_recent_scene_by_its_picture(self):
         self.start_own_scene()
         self.until_idle()

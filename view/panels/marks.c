@@ -95,14 +95,18 @@ void gz_marks_draw_cross(struct gz_place at)
 }
 
 /* The letters of one edge. x and y: 0 at the left or top, 1 at the right or bottom. */
-static void draw_letter(const char *text, float x, float y)
+static void draw_letter(const char *text, float x, float y, struct gz_place corner,
+			struct gz_place opposite)
 {
 	static const struct gz_place around[] = { { -1, 0 }, { 1, 0 }, { 0, -1 }, { 0, 1 } };
 	const struct gz_paint dark = { 0, 0, 0, 255 };
 	const float scale = gz_widgets_scale(), side = MARGIN * scale, top = LETTER_MARGIN * scale;
-	const struct gz_place room = gz_widgets_room(), size = gz_text_room(LETTER_SIZE, text);
-	const struct gz_place at = { floorf(side + x * (room.x - 2 * side - size.x)),
-				     floorf(top + y * (room.y - 2 * top - size.y)) };
+	const struct gz_place size = gz_text_room(LETTER_SIZE, text);
+	const struct gz_place room = { opposite.x - corner.x, opposite.y - corner.y };
+	const struct gz_place at = {
+		floorf(corner.x + side + x * (room.x - 2 * side - size.x)),
+		floorf(corner.y + top + y * (room.y - 2 * top - size.y)),
+	};
 	for (size_t i = 0; i < sizeof around / sizeof around[0]; i++)
 		gz_draw_text(GZ_LAYER_PICTURE,
 			     (struct gz_place) { at.x + around[i].x, at.y + around[i].y },
@@ -110,12 +114,13 @@ static void draw_letter(const char *text, float x, float y)
 	gz_draw_text(GZ_LAYER_PICTURE, at, LETTER_SIZE, gz_paint_plain, text);
 }
 
-void gz_marks_draw_letters(const struct gz_letters *letters)
+void gz_marks_draw_letters(const struct gz_letters *letters, struct gz_place corner,
+			   struct gz_place opposite)
 {
-	draw_letter(letters->left, 0, 0.5f);
-	draw_letter(letters->right, 1, 0.5f);
-	draw_letter(letters->top, 0.5f, 0);
-	draw_letter(letters->bottom, 0.5f, 1);
+	draw_letter(letters->left, 0, 0.5f, corner, opposite);
+	draw_letter(letters->right, 1, 0.5f, corner, opposite);
+	draw_letter(letters->top, 0.5f, 0, corner, opposite);
+	draw_letter(letters->bottom, 0.5f, 1, corner, opposite);
 }
 
 void gz_marks_draw_running(int row, const char *what, bool recording, int64_t seconds)

@@ -23,7 +23,8 @@ float gz_marks_draw_low_caption(struct gz_paint paint, const char *text);
 void gz_marks_draw_cross(struct gz_place at);
 
 /** Draw letters at the edges of the window. */
-void gz_marks_draw_letters(const struct gz_letters *letters);
+void gz_marks_draw_letters(const struct gz_letters *letters, struct gz_place corner,
+			   struct gz_place opposite);
 
 /**
  * Draw the scale of the tint at the top left, below @p below.

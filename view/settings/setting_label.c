@@ -84,6 +84,13 @@ static const struct {
 	{ "view.gaze_mark", "circle in comparisons" },
 	{ "view.refine", "refine at rest" },
 	{ "view.frame_times", "plot of frame times" },
+	{ "view.layout", "window shows" },
+	{ "view.crosshair", "crosshair, share of the box" },
+	{ "view.crosshair_follows", "crosshair follows" },
+	{ "view.slice_colours", "colours in slices" },
+	{ "view.slice_level", "grey level, values" },
+	{ "view.slice_width", "grey width, 0 = automatic" },
+	{ "view.distances", "distances, box shares" },
 };
 
 static const char *label_of(const char *key)
@@ -120,7 +127,8 @@ void gz_setting_section(const struct gz_option *option, char out_text[GZ_SETTING
 /* Three numbers from 0 to 1 are a colour, except for shares of the box. */
 const char *gz_setting_axes(const struct gz_option *option)
 {
-	const bool share_of_box = strncmp(option->key, "clip.", 5) == 0;
+	const bool share_of_box =
+		strncmp(option->key, "clip.", 5) == 0 || strcmp(option->key, "view.crosshair") == 0;
 	const bool colour = option->min == 0 && option->max == 1 && !share_of_box;
 	const bool spacings = strncmp(option->key, "foveation.", 10) == 0;
 	return option->count == 3 && !colour && !spacings ? "xyz" : NULL;

@@ -8,6 +8,7 @@
 #include "view/panels/settings_panel.h"
 #include "view/settings/scene_keys.h"
 #include "view/window/history.h"
+#include "view/window/sections.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -187,20 +188,20 @@ struct gz_settings_panel gz_window_settings_rows(const struct gz_window *window)
 static void draw_patient_letters(struct gz_window *window)
 {
 	struct gz_letters letters;
+	const struct gz_place corner = gz_window_place_of(window, (struct gz_point) { 0, 0 });
+	const struct gz_place opposite = gz_window_place_of(window, (struct gz_point) { 1, 1 });
 	if (window->settings.view.letters && window->maker &&
 	    gz_frame_maker_scene(window->maker)->volume.oriented &&
 	    gz_letters_of_camera(&window->settings.camera, &letters) == GZ_OK)
-		gz_marks_draw_letters(&letters);
+		gz_marks_draw_letters(&letters, corner, opposite);
 }
 
 static void draw_basics(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	const struct gz_place room = gz_widgets_room();
-	const struct gz_point at = gaze->reading.point;
 	draw_patient_letters(window);
 	if (window->settings.view.gaze_cursor && gaze->reading.known)
-		gz_marks_draw_cross((struct gz_place) { at.x * room.x, at.y * room.y });
-	window->cross_drawn = at;
+		gz_marks_draw_cross(gz_window_place_of(window, gaze->reading.point));
+	window->cross_drawn = gaze->reading.point;
 	if (!window->settings_open || !window->maker)
 		return;
 	struct gz_settings_panel panel = gz_window_settings_rows(window);

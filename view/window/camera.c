@@ -242,9 +242,10 @@ static void drag_camera(struct gz_window *window, double right, double down)
 		gz_camera_orbit(camera, -right * deg, -down * deg);
 }
 
-static void zoom_by_wheel(struct gz_window *window, double up)
+static bool zoom_by_wheel(struct gz_window *window, double up)
 {
 	gz_camera_zoom(changed_camera(window), pow(ZOOM_PER_NOTCH, up));
+	return true;
 }
 
 const struct gz_window_part gz_window_camera_part = {

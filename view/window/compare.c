@@ -7,6 +7,8 @@
 
 #include "view/draw/quad.h"
 #include "view/panels/widgets.h"
+#include "view/window/displays.h"
+#include "view/window/sections.h"
 #include "view/window/standard.h"
 #include "view/window/window_state.h"
 
@@ -245,14 +247,14 @@ static void draw_compare_label(struct gz_window *window, const char *text, float
 {
 	const float unit = gz_widgets_scale();
 	const float width = gz_text_room(1, text).x + 10 * unit; /* with the caption's rim */
-	const struct gz_place room = gz_widgets_room();
+	const struct gz_place low = gz_window_place_of(window, (struct gz_point) { 1, 1 });
 	const float at = leftwards ? x - width - LABEL_MARGIN * unit : x + LABEL_MARGIN * unit;
-	const float left = fmaxf(0, fminf(at, room.x - width));
+	const float left = fmaxf(0, fminf(at, low.x - width));
 	/* The lower left corner has the caption of the gaze. */
 	const float below = left < CORNER_WIDTH * unit ? CORNER_HEIGHT * unit : 0;
 	const struct gz_place corner = {
 		left,
-		room.y - gz_widgets_line_height() - 10 * unit - LABEL_MARGIN * unit - below,
+		low.y - gz_widgets_line_height() - 10 * unit - LABEL_MARGIN * unit - below,
 	};
 	gz_draw_caption(GZ_LAYER_PICTURE, corner,
 			window->compare->busy && !leftwards ? gz_paint_amber : gz_paint_plain,
@@ -261,9 +263,11 @@ static void draw_compare_label(struct gz_window *window, const char *text, float
 
 static void draw_divider(struct gz_window *window, const char *standard)
 {
-	const struct gz_place room = gz_widgets_room();
-	const float x = roundf((float)window->settings.view.split * room.x);
-	const struct gz_place top = { x, 0 }, bottom = { x, room.y };
+	const float split = (float)window->settings.view.split;
+	struct gz_place top = gz_window_place_of(window, (struct gz_point) { split, 0 });
+	struct gz_place bottom = gz_window_place_of(window, (struct gz_point) { split, 1 });
+	const float x = roundf(top.x);
+	top.x = bottom.x = x;
 	gz_draw_line(GZ_LAYER_PICTURE, top, bottom, gz_paint_ground, 3);
 	gz_draw_line(GZ_LAYER_PICTURE, top, bottom, gz_paint_plain, 1);
 	draw_compare_label(window, window->record.method, x, true);
@@ -274,9 +278,8 @@ static void draw_divider(struct gz_window *window, const char *standard)
  */
 static void draw_compared_gaze(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	const struct gz_place room = gz_widgets_room();
 	const struct gz_point at = gaze->reading.point;
-	const struct gz_place middle = { at.x * room.x, at.y * room.y };
+	const struct gz_place middle = gz_window_place_of(window, at);
 	window->compare->gaze_drawn = at;
 	if (!gaze->reading.known || window->settings.view.gaze_cursor ||
 	    !window->settings.view.gaze_mark)
@@ -308,29 +311,31 @@ static void draw_compare_marks(struct gz_window *window, const struct gz_window_
 	}
 	snprintf(text, sizeof text, "%s less %s, %g times", window->record.method, standard,
 		 window->settings.view.difference_gain);
-	draw_compare_label(window, text, (gz_widgets_room().x - gz_text_room(1, text).x) / 2,
+	draw_compare_label(window, text,
+			   (gz_window_place_of(window, (struct gz_point) { 1, 1 }).x -
+			    gz_text_room(1, text).x) /
+				   2,
 			   false);
 }
 
 /* Whether the mouse is near the divider. */
 static bool grab_divider(struct gz_window *window, int button, int modifiers)
 {
-	int width, height;
-	glfwGetWindowSize(window->glfw, &width, &height);
-	const double x = window->settings.view.split * width;
+	const struct gz_place at = gz_window_place_of(
+		window, (struct gz_point) { (float)window->settings.view.split, 0 });
 	return button == GLFW_MOUSE_BUTTON_LEFT && modifiers == 0 && is_compare_wanted(window) &&
 	       window->settings.view.compare == GZ_COMPARE_SPLIT &&
-	       fabs(window->cursor[0] - x) <= GRAB_NEAR * (double)gz_widgets_scale();
+	       window->cursor[1] >= (double)at.y &&
+	       fabs(window->cursor[0] - (double)at.x) <= GRAB_NEAR * (double)gz_widgets_scale();
 }
 
 static void drag_divider(struct gz_window *window, double right, double down)
 {
 	(void)right;
 	(void)down;
-	int width, height;
-	glfwGetWindowSize(window->glfw, &width, &height);
-	if (width > 0)
-		window->settings.view.split = fmin(1, fmax(0, window->cursor[0] / width));
+	struct gz_point point;
+	if (gz_window_mouse_point(window, &point))
+		window->settings.view.split = fmin(1, fmax(0, (double)point.x));
 	window->present_needed = true;
 }
 

@@ -1,5 +1,6 @@
 #include "view/window/displays.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -7,6 +8,7 @@
 
 #include "base/clock.h"
 #include "view/window/glfw.h"
+#include "view/window/sections.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -168,9 +170,49 @@ const struct gz_monitor *gz_window_own_monitor(const struct gz_window *window)
 	return at >= 0 ? &displays->list.monitors[at] : NULL;
 }
 
+void gz_window_picture_size(const struct gz_window *window, int *out_width, int *out_height)
+{
+	gz_window_framebuffer(window, out_width, out_height);
+	if (!gz_window_has_sections(window))
+		return;
+	*out_width = *out_width > 1 ? *out_width / 2 : *out_width;
+	*out_height = *out_height > 1 ? *out_height / 2 : *out_height;
+}
+
+void gz_window_picture_place(const struct gz_window *window, double out_place[4])
+{
+	const struct gz_window_displays *displays = window->displays;
+	int size_px[2];
+	gz_window_picture_size(window, &size_px[0], &size_px[1]);
+	for (int i = 0; i < 2; i++)
+		out_place[2 + i] = displays->framebuffer_px[i] > 0
+					   ? (double)displays->rect_px[2 + i] * size_px[i] /
+						     displays->framebuffer_px[i]
+					   : displays->rect_px[2 + i];
+	out_place[0] = 0;
+	out_place[1] = displays->rect_px[3] - out_place[3];
+}
+
+bool gz_window_mouse_point(const struct gz_window *window, struct gz_point *out_point)
+{
+	double place[4];
+	gz_window_picture_place(window, place);
+	if (place[2] < 1 || place[3] < 1)
+		return false;
+	*out_point = (struct gz_point) { (float)((window->cursor[0] - place[0]) / place[2]),
+					 (float)((window->cursor[1] - place[1]) / place[3]) };
+	return true;
+}
+
 void gz_window_rect(const struct gz_window *window, int out_rect_px[4])
 {
-	memcpy(out_rect_px, window->displays->rect_px, sizeof window->displays->rect_px);
+	const int *rect_px = window->displays->rect_px;
+	double place[4];
+	gz_window_picture_place(window, place);
+	out_rect_px[0] = rect_px[0] + (int)lround(place[0]);
+	out_rect_px[1] = rect_px[1] + (int)lround(place[1]);
+	out_rect_px[2] = (int)lround(place[2]);
+	out_rect_px[3] = (int)lround(place[3]);
 }
 
 void gz_window_framebuffer(const struct gz_window *window, int *out_width, int *out_height)
@@ -182,8 +224,9 @@ void gz_window_framebuffer(const struct gz_window *window, int *out_width, int *
 struct gz_window_share gz_window_share(const struct gz_window *window)
 {
 	const bool fills = window->options->gaze_fills_window || gz_window_is_simulating(window);
-	return gz_window_share_of(fills ? NULL : gz_window_tracker_monitor(window),
-				  window->displays->rect_px);
+	int rect_px[4];
+	gz_window_rect(window, rect_px);
+	return gz_window_share_of(fills ? NULL : gz_window_tracker_monitor(window), rect_px);
 }
 
 /* Move a window whose monitor has gone onto another one. */

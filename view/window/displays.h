@@ -32,6 +32,16 @@ void gz_window_rect(const struct gz_window *window, int out_rect_px[4]);
 /** Size of the framebuffer in this turn, px; 0 while the window is minimised. */
 void gz_window_framebuffer(const struct gz_window *window, int *out_width, int *out_height);
 
+/** Size of the picture, px: the framebuffer's, or a quarter of it beside slices. */
+void gz_window_picture_size(const struct gz_window *window, int *out_width, int *out_height);
+
+/** Where the picture lies in the window: x, y, width, height in screen coordinates. It touches the
+ *  lower left corner. */
+void gz_window_picture_place(const struct gz_window *window, double out_place[4]);
+
+/** The mouse on the picture, 0 to 1; beyond beside it. @return false: the picture has no size */
+bool gz_window_mouse_point(const struct gz_window *window, struct gz_point *out_point);
+
 /** The window as a share of the tracker's display; all of it with --gaze-fills-window. */
 struct gz_window_share gz_window_share(const struct gz_window *window);
 

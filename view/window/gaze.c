@@ -367,10 +367,11 @@ static void report_pointer(struct gz_window *window, int64_t now_ns)
 		return;
 	}
 	const struct gz_window_share share = gz_window_share(window);
-	const struct gz_point point = {
-		(float)(share.x + share.width * window->cursor[0] / rect_px[2]),
-		(float)(share.y + share.height * window->cursor[1] / rect_px[3]),
-	};
+	struct gz_point point;
+	if (!gz_window_mouse_point(window, &point))
+		return;
+	point.x = (float)(share.x + share.width * (double)point.x);
+	point.y = (float)(share.y + share.height * (double)point.y);
 	gz_viewer_link_pointer(window->link, &point, now_ns);
 }
 

@@ -7,6 +7,8 @@
 
 #include "base/clock.h"
 #include "view/panels/widgets.h"
+#include "view/window/displays.h"
+#include "view/window/sections.h"
 #include "view/window/window_state.h"
 
 /* ---- keys ---- */
@@ -189,14 +191,10 @@ static void on_button(GLFWwindow *glfw, int button, int action, int mods)
 /* The mouse's gaze is a share of the window, which also changes with the window's size. */
 static void move_mouse_gaze(struct gz_window *window)
 {
-	int width, height;
+	struct gz_point point;
 	window->cursor_held = false;
-	glfwGetWindowSize(window->glfw, &width, &height);
-	if (width < 1 || height < 1)
-		return;
-	gz_gaze_source_move(window->mouse,
-			    (struct gz_point) { (float)(window->cursor[0] / width),
-						(float)(window->cursor[1] / height) });
+	if (gz_window_mouse_point(window, &point) && !gz_window_sections_lie_at(window, point))
+		gz_gaze_source_move(window->mouse, point);
 }
 
 static void on_cursor(GLFWwindow *glfw, double x, double y)
@@ -234,8 +232,8 @@ static void on_wheel(GLFWwindow *glfw, double right, double up)
 	if (window->alone || panels_have_mouse(window) || !window->maker)
 		return;
 	GZ_FOR_EACH_PART (part)
-		if ((*part)->wheel)
-			(*part)->wheel(window, up);
+		if ((*part)->wheel && (*part)->wheel(window, up))
+			return;
 }
 
 static void on_size(GLFWwindow *glfw, int width, int height)

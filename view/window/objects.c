@@ -7,6 +7,7 @@
 #include "view/panels/marks.h"
 #include "view/panels/objects_panel.h"
 #include "view/panels/widgets.h"
+#include "view/window/displays.h"
 #include "view/window/objects.h"
 
 #define GZ_LOG_MODULE "window"
@@ -32,18 +33,6 @@ static uint32_t object_at(const struct gz_window *window, struct gz_point point)
 		return 0;
 	return gz_frame_object_at(window->maker, &window->made, window->record.width,
 				  window->record.height, point);
-}
-
-/* The mouse as a share of the window. @return false: it has no size */
-static bool mouse_point(const struct gz_window *window, struct gz_point *out_point)
-{
-	int width, height;
-	glfwGetWindowSize(window->glfw, &width, &height);
-	if (width < 1 || height < 1)
-		return false;
-	*out_point = (struct gz_point) { (float)(window->cursor[0] / width),
-					 (float)(window->cursor[1] / height) };
-	return true;
 }
 
 static void forget_objects(struct gz_window *window)
@@ -86,7 +75,7 @@ static void select_object(struct gz_window *window, uint32_t id)
 static void click_object(struct gz_window *window)
 {
 	struct gz_point point;
-	const uint32_t id = mouse_point(window, &point) ? object_at(window, point) : 0;
+	const uint32_t id = gz_window_mouse_point(window, &point) ? object_at(window, point) : 0;
 	if (id > 0 || window->objects->panel.open)
 		select_object(window, id);
 }
@@ -156,7 +145,7 @@ static void draw_name_at_mouse(struct gz_window *window)
 	char text[GZ_OBJECT_ROW_SIZE];
 	struct gz_point point;
 	if (!window->cursor_inside || window->grabber || gz_widgets_have_mouse() ||
-	    !mouse_point(window, &point))
+	    !gz_window_mouse_point(window, &point))
 		return;
 	const uint32_t id = object_at(window, point);
 	const size_t row = gz_objects_panel_find(panel, scene_of(window), id);

@@ -98,8 +98,9 @@ struct gz_window_part {
 	/** The left button was clicked on the picture at window->cursor, without a drag and without
 	 *  a modifier, and nothing but the camera had grabbed it. Only with a scene. */
 	void (*click)(struct gz_window *window);
-	/** The wheel was turned over the picture, notches. Only with a scene. */
-	void (*wheel)(struct gz_window *window, double up);
+	/** The wheel was turned over the picture, notches. Only with a scene. @return whether the
+	 *  part took it; later parts are not asked then */
+	bool (*wheel)(struct gz_window *window, double up);
 	/** Whether what the part draws over the picture changes with this gaze. */
 	bool (*follows)(struct gz_window *window, const struct gz_window_gaze *gaze);
 	/** A picture has been cast; window->record describes it. */
@@ -149,6 +150,7 @@ struct gz_window_part {
 	ROW(history)       /* undoes and redoes; before all that change settings */ \
 	ROW(displays)      /* monitors, and which is the tracker's */ \
 	ROW(gaze)          /* sources of the gaze */ \
+	ROW(sections)      /* slices; under the captions, and before all that take the mouse */ \
 	ROW(status)        /* the line on top, and the lower left corner */ \
 	ROW(compare)       /* the standard picture beside the method's */ \
 	ROW(refine)        /* full quality at rest */ \

@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "view/gaze/gaze_trail.h"
 #include "view/panels/widgets.h"
+#include "view/window/sections.h"
 #include "view/window/window_state.h"
 
 /* Least time between frames for fading alone (chosen: smooth enough). */
@@ -44,11 +45,6 @@ static bool trail_follows(struct gz_window *window, const struct gz_window_gaze 
 	return trail->changed && now_ns - trail->drawn_ns >= FADE_INTERVAL_NS;
 }
 
-static struct gz_place place_in_window(struct gz_point point, struct gz_place room)
-{
-	return (struct gz_place) { point.x * room.x, point.y * room.y };
-}
-
 static struct gz_paint trail_paint(float strength, float opacity)
 {
 	return (struct gz_paint) { 90, 220, 255, (uint8_t)lroundf(255 * strength * opacity) };
@@ -65,7 +61,6 @@ static void draw_trail_stay(const struct gz_gaze_stay *stay, struct gz_place at,
 static void draw_trail(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	const struct gz_gaze_trail *trail = &window->trail->trail;
-	const struct gz_place room = gz_widgets_room();
 	const int64_t now_ns = gz_clock_now_ns();
 	(void)gaze;
 	if (!window->settings.view.trail)
@@ -75,9 +70,10 @@ static void draw_trail(struct gz_window *window, const struct gz_window_gaze *ga
 	for (int i = 0; i < trail->count; i++) {
 		const struct gz_gaze_stay *stay = &trail->stays[i];
 		const float strength = gz_gaze_trail_strength(stay, now_ns);
-		const struct gz_place at = place_in_window(stay->point, room);
+		const struct gz_place at = gz_window_place_of(window, stay->point);
 		if (i > 0)
-			gz_draw_line(GZ_LAYER_PICTURE, place_in_window(stay[-1].point, room), at,
+			gz_draw_line(GZ_LAYER_PICTURE, gz_window_place_of(window, stay[-1].point),
+				     at,
 				     trail_paint(gz_gaze_trail_strength(&stay[-1], now_ns), 0.8f),
 				     LINE_THICKNESS);
 		if (stay->fixation)

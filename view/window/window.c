@@ -15,6 +15,7 @@
 #include "view/window/gaze.h"
 #include "view/window/glfw.h"
 #include "view/window/loading.h"
+#include "view/window/sections.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -182,18 +183,29 @@ static void draw_all_panels(struct gz_window *window, const struct gz_window_gaz
 	gz_widgets_end();
 }
 
+/* The picture may be smaller than the framebuffer; both have the lower left corner. */
+static void paint_picture(struct gz_window *window, int width, int height)
+{
+	int size_px[2];
+	gz_window_picture_size(window, &size_px[0], &size_px[1]);
+	const bool smaller = gz_window_has_sections(window);
+	if (!window->any_shown || smaller)
+		gz_quad_clear(width, height);
+	width = smaller ? size_px[0] : width;
+	height = smaller ? size_px[1] : height;
+	if (window->any_shown)
+		gz_quad_draw(&window->quad, width, height);
+	GZ_FOR_EACH_PART (part)
+		if ((*part)->paint && (!window->alone || *part == window->alone))
+			(*part)->paint(window, width, height);
+}
+
 void gz_window_present(struct gz_window *window, const struct gz_window_gaze *gaze, int width,
 		       int height)
 {
 	const struct gz_scene_settings before = window->settings;
 	window->present_needed = false;
-	if (window->any_shown)
-		gz_quad_draw(&window->quad, width, height);
-	else
-		gz_quad_clear(width, height);
-	GZ_FOR_EACH_PART (part)
-		if ((*part)->paint && (!window->alone || *part == window->alone))
-			(*part)->paint(window, width, height);
+	paint_picture(window, width, height);
 	draw_all_panels(window, gaze);
 	GZ_FOR_EACH_PART (part)
 		if ((*part)->drawn)
@@ -262,7 +274,9 @@ static enum gz_result refresh_window(struct gz_window *window)
 	}
 	window->frame_new = false;
 	if (window->maker && !window->picture_hidden) {
-		enum gz_result r = refresh_picture(window, &gaze, width, height);
+		int picture_px[2];
+		gz_window_picture_size(window, &picture_px[0], &picture_px[1]);
+		enum gz_result r = refresh_picture(window, &gaze, picture_px[0], picture_px[1]);
 		if (r != GZ_OK)
 			return r;
 	} else if (window->cast_needed) {

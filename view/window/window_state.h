@@ -72,6 +72,7 @@ struct gz_window {
 	struct gz_window_refine *refine;
 	struct gz_window_replay *replay;
 	struct gz_window_series *series;
+	struct gz_window_sections *sections;
 	struct gz_window_session *session;
 	struct gz_window_sources *sources;
 	struct gz_window_start *start;
