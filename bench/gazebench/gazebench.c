@@ -20,6 +20,7 @@ static const struct gz_command *const commands[] = {
 	&gazebench_clip,
 	&gazebench_compare,
 	&gazebench_filter,
+	&gazebench_answers,
 	&gazebench_stability,
 	NULL,
 };

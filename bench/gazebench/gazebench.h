@@ -28,6 +28,7 @@ extern const struct gz_command gazebench_accumulate; /**< gain of keeping earlie
 extern const struct gz_command gazebench_clip;      /**< sequences for metrics of moving pictures */
 extern const struct gz_command gazebench_compare;   /**< how far two pictures are apart */
 extern const struct gz_command gazebench_filter;    /**< lag and jitter of the gaze filter */
+extern const struct gz_command gazebench_answers;   /**< an experiment, summed up */
 extern const struct gz_command gazebench_stability; /**< where methods fail, on a scene */
 extern const struct gz_command gazebench_techniques; /**< the techniques compared */
 

@@ -110,7 +110,7 @@ class Run(unittest.TestCase):
     def test_help_names_commands_and_what_they_do_in_straight_columns(self):
         text = self.gazebench(self.command("--help")).stdout
         lines = text.split("commands:\n")[1].split("\n\n")[0].splitlines()
-        self.assertEqual(len(lines), 10)
+        self.assertEqual(len(lines), 11)
         starts = {re.match(r"  [a-z]+ +[A-Z.a-z]+(?: [A-Z][A-Za-z.]+)* {2,}(?=[a-z])", line).end()
                   for line in lines}
         self.assertEqual(len(starts), 1, text)

@@ -173,6 +173,9 @@ SAMPLES = {
     "bonsai_256x256x256_uint8.raw.zst": link_data("volumes/bonsai_256x256x256_uint8.raw.zst"),
     "session.gzl": write_recording, "day.gzl": write_recording,
     "pilot.csv": write_table, "subject7.asc": write_eyelink, "walk.session": write_session,
+    "sub-07_task-sharpness_events.tsv": write_text(
+        "trial_type\tpractice\tcorrect\tresponse\tresponse_time\tscene_1\tsettings_1\tsettings_2\t"
+        "staircase\tstaircase_value\nfine\t0\t1\tfirst\t0.7\ts\tn/a\tk=1\tk\t1\n"),
     "bone.tf": write_text("0.4 1 1 1 0\n0.5 1 1 1 0.5\n"),
 }
 

@@ -12,6 +12,7 @@
 #include "base/clock.h"
 #include "render/plan/method.h"
 #include "view/experiment/answers.h"
+#include "view/experiment/participants.h"
 #include "view/experiment/staircase.h"
 #include "view/made_experiment.h"
 
@@ -20,7 +21,7 @@ static struct captured_log captured;
 /* An experiment of four trials and a folder for its answers. */
 struct desk {
 	struct made_experiment made;
-	char folder[64], path[160], json[160];
+	char folder[64], path[160], json[160], list[160], list_json[160];
 	struct gz_answers *answers;
 };
 
@@ -37,6 +38,8 @@ static void sit_down(struct desk *desk)
 		 desk->folder);
 	snprintf(desk->json, sizeof desk->json, "%s/sub-07_ses-1_task-sharp_events.json",
 		 desk->folder);
+	snprintf(desk->list, sizeof desk->list, "%s/participants.tsv", desk->folder);
+	snprintf(desk->list_json, sizeof desk->list_json, "%s/participants.json", desk->folder);
 	captured_log_init(&captured, "*:debug");
 }
 
@@ -45,6 +48,8 @@ static void get_up(struct desk *desk)
 	gz_answers_close(&desk->answers);
 	unlink(desk->path);
 	unlink(desk->json);
+	unlink(desk->list);
+	unlink(desk->list_json);
 	assert_int_equal(rmdir(desk->folder), 0);
 	free_experiment(&desk->made);
 }
@@ -55,6 +60,7 @@ static enum gz_result open_answers_with(struct desk *desk, bool resume, const ch
 		.place = desk->folder,
 		.participant = "07",
 		.session = "1",
+		.notes = "",
 		.resume = resume,
 		.version = "1.2",
 		.gaze_source = gaze_source,
@@ -329,6 +335,54 @@ static void resumed_staircases_go_on_where_they_were(void **state)
 	get_up(&desk);
 }
 
+static void list_file(const struct desk *desk, const char *text)
+{
+	FILE *file = fopen(desk->list, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+}
+
+static void first_answer_lists_the_participant(void **state)
+{
+	(void)state;
+	struct desk desk;
+	sit_down(&desk);
+	assert_int_equal(open_answers(&desk, false), GZ_OK);
+	assert_int_not_equal(access(desk.list, F_OK), 0);
+	answer(&desk, 0);
+	answer(&desk, 1);
+	assert_string_equal(content_of(desk.list), "participant_id\tnotes\nsub-07\tn/a\n");
+	json_t *json = json_load_file(desk.list_json, 0, NULL);
+	assert_non_null(json_object_get(json_object_get(json, "notes"), "Description"));
+	json_decref(json);
+	get_up(&desk);
+}
+
+static void list_of_participants_keeps_what_others_wrote(void **state)
+{
+	(void)state;
+	struct desk desk;
+	const struct gz_participant first = { "07", "1", "tired" }, second = { "07", "2", "awake" };
+	const struct gz_participant other = { "09", "", "glasses" };
+	sit_down(&desk);
+	list_file(&desk, "participant_id\tage\nsub-03\t31\nsub-07\t28\n");
+	assert_int_equal(gz_participants_list(desk.folder, &first, &captured.log), GZ_OK);
+	assert_int_equal(gz_participants_list(desk.folder, &first, &captured.log), GZ_OK);
+	assert_int_equal(gz_participants_list(desk.folder, &second, &captured.log), GZ_OK);
+	assert_int_equal(gz_participants_list(desk.folder, &other, &captured.log), GZ_OK);
+	assert_string_equal(content_of(desk.list),
+			    "participant_id\tage\tnotes\nsub-03\t31\tn/a\n"
+			    "sub-07\t28\tses-1: tired; ses-2: awake\nsub-09\tn/a\tglasses\n");
+	list_file(&desk, "participant_id\tage\nsub-03\n");
+	assert_int_equal(gz_participants_list(desk.folder, &other, &captured.log), GZ_ERR_FORMAT);
+	assert_non_null(strstr(captured.last, ":2: not as many cells as columns"));
+	list_file(&desk, "name\n");
+	assert_int_equal(gz_participants_list(desk.folder, &other, &captured.log), GZ_ERR_FORMAT);
+	assert_string_equal(content_of(desk.list), "name\n");
+	get_up(&desk);
+}
+
 static void incomplete_row_is_repeated(void **state)
 {
 	(void)state;
@@ -460,6 +514,8 @@ TEST_SUITE(answers)
 		cmocka_unit_test(resumed_file_continues_after_its_last_trial),
 		cmocka_unit_test(answers_are_not_continued_with_another_source_of_the_gaze),
 		cmocka_unit_test(resumed_staircases_go_on_where_they_were),
+		cmocka_unit_test(first_answer_lists_the_participant),
+		cmocka_unit_test(list_of_participants_keeps_what_others_wrote),
 		cmocka_unit_test(incomplete_row_is_repeated),
 		cmocka_unit_test(answers_of_another_order_cannot_be_resumed),
 		cmocka_unit_test(other_files_are_refused),

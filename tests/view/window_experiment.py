@@ -183,7 +183,7 @@ class Experiment(WindowCase):
         kept = self.rows()
         self.begin("--gaze", "0.5,0.5", "--resume")
         self.answer_by_clicks(self.ended, (0.5, 0.78), (0.43, 0.78))
-        self.finish(0)
+        self.assertRegex(self.finish(0), "main, fine: threshold of foveation.acuity_slope 0")
         rows = self.rows()
         self.assertEqual(rows[:len(kept)], kept)
         self.assertLess(len(rows), 60)

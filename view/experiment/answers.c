@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "view/experiment/experiment_internal.h"
+#include "view/experiment/participants.h"
 #include "view/experiment/staircase.h"
 
 #define GZ_LOG_MODULE "experiment"
@@ -28,6 +29,7 @@ struct gz_answers {
 	int fd;
 	size_t done, next; /* rows; index of the next trial */
 	int run;
+	bool listed; /* the participant is in the list */
 };
 
 bool gz_answers_label_valid(const char *label)
@@ -379,6 +381,21 @@ const char *gz_answers_file(const struct gz_answers *answers)
 	return answers->path;
 }
 
+/* Once a run, and in a folder only: a file of one's own has its own list. */
+static void list_participant(struct gz_answers *answers)
+{
+	const struct gz_answers_request *request = &answers->request;
+	const struct gz_participant participant = {
+		.label = request->participant,
+		.session = request->session,
+		.notes = request->notes,
+	};
+	if (!answers->listed && !is_answer_file(request->place))
+		gz_participants_list(request->place[0] ? request->place : ".", &participant,
+				     answers->log);
+	answers->listed = true;
+}
+
 enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_trial_result *result,
 				int64_t start_ns, const struct gz_trial_equipment *equipment)
 {
@@ -393,6 +410,7 @@ enum gz_result gz_answers_write(struct gz_answers *answers, const struct gz_tria
 	const enum gz_result written = append_row(answers, &text);
 	gz_text_free(&text);
 	if (written == GZ_OK) {
+		list_participant(answers);
 		answers->done++;
 		answers->next = gz_sequence_next(answers->sequence, result->index + 1);
 	}

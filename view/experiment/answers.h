@@ -24,6 +24,7 @@ struct gz_answers_request {
 	const char *place; /**< a folder, or a file that ends in ".tsv" */
 	const char *participant;
 	const char *session; /**< may be empty */
+	const char *notes;   /**< for the list of participants; may be empty */
 	bool resume;         /**< continue an existing file; its staircases take the answers */
 	const char *version; /**< of the program */
 	/** Where the gaze comes from: "daemon", "mouse", "pointer", "fixed" or "log". A file is not
@@ -83,6 +84,9 @@ const char *gz_answers_file(const struct gz_answers *answers);
 
 /**
  * Add the row of a trial. It is on the disk when this returns.
+ *
+ * With the first row the participant is listed in participants.tsv (participants.h), if the answers
+ * have a folder. A list that cannot be written is logged and not an error.
  *
  * @param start_ns   host time that onsets are relative to
  * @param equipment  what it was shown with

@@ -1,5 +1,6 @@
 #include "view/experiment/sitting.h"
 #include "render/plan/method.h"
+#include "view/experiment/staircase.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,8 @@ const struct gz_option gz_sitting_option_table[] = {
 	  .preset = "", .help = "participant's label: letters and digits, such as 07" },
 	{ "session", GZ_OPTION_STRING, AT(session), .max = GZ_PARTICIPANT_SIZE, .preset = "",
 	  .help = "session's label, if there are several: letters and digits" },
+	{ "notes", GZ_OPTION_STRING, AT(notes), .max = GZ_NOTES_SIZE, .preset = "",
+	  .help = "notes on this session, for participants.tsv" },
 	{ "answers", GZ_OPTION_STRING, AT(answers), .max = GZ_PATH_SIZE, .preset = ".",
 	  .help = "folder for the answers, or the file itself, ending in .tsv" },
 	{ "resume", GZ_OPTION_BOOL, AT(resume), .preset = "false",
@@ -31,6 +34,7 @@ enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options
 	if (!options->file[0]) {
 		const char *other = options->participant[0] ? "participant"
 				    : options->session[0]   ? "session"
+				    : options->notes[0]     ? "notes"
 				    : options->resume       ? "resume"
 							    : NULL;
 		if (!other)
@@ -49,6 +53,12 @@ enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options
 		gz_err(log, "--session %s: not a label; give letters and digits", options->session);
 		return GZ_ERR_INVAL;
 	}
+	for (const char *letter = options->notes; *letter; letter++) {
+		if ((unsigned char)*letter >= ' ' && *letter != 0x7f)
+			continue;
+		gz_err(log, "--notes: contains a tab or line break; give one line of text");
+		return GZ_ERR_INVAL;
+	}
 	return GZ_OK;
 }
 
@@ -61,6 +71,7 @@ static enum gz_result open_answers(struct gz_sitting *sitting,
 		.place = options->answers,
 		.participant = options->participant,
 		.session = options->session,
+		.notes = options->notes,
 		.resume = options->resume,
 		.version = program->version,
 		.gaze_source = program->gaze_source,
@@ -120,6 +131,22 @@ void gz_sitting_print(const struct gz_sitting *sitting, FILE *out)
 	}
 	fprintf(out, "%zu trials, %.1f min without answers and breaks\n", sitting->sequence.count,
 		total_s / 60);
+}
+
+void gz_sitting_log_thresholds(const struct gz_sitting *sitting, const struct gz_log *log)
+{
+	for (size_t b = 0; b < sitting->experiment.block_count; b++) {
+		const struct gz_block *block = &sitting->experiment.blocks[b];
+		for (size_t i = 0; i < block->condition_count; i++) {
+			const struct gz_staircase *staircase = block->conditions[i].staircase;
+			if (!staircase || staircase->quest.trials == 0)
+				continue;
+			const struct gz_quest_estimate found = gz_quest_estimate(&staircase->quest);
+			gz_info(log, "%s, %s: threshold of %s %.3g, 95 %% %.3g to %.3g, %d answers",
+				block->label, block->conditions[i].label, staircase->setting.key,
+				found.threshold, found.low, found.high, staircase->quest.trials);
+		}
+	}
 }
 
 void gz_sitting_close(struct gz_sitting **sitting)

@@ -13,12 +13,14 @@
 #include "base/option.h"
 #include "base/result.h"
 #include "view/experiment/answers.h"
+#include "view/experiment/participants.h"
 
 /** Options of the command line for experiments. */
 struct gz_sitting_options {
 	char file[GZ_PATH_SIZE]; /**< of the experiment; empty: none */
 	char participant[GZ_PARTICIPANT_SIZE];
 	char session[GZ_PARTICIPANT_SIZE];
+	char notes[GZ_NOTES_SIZE];
 	char answers[GZ_PATH_SIZE]; /**< folder or file */
 	bool resume;
 };
@@ -61,6 +63,9 @@ enum gz_result gz_sitting_open(const struct gz_sitting_options *options,
 
 /** Print the trials in their order, one a line, and their total time without answers and breaks. */
 void gz_sitting_print(const struct gz_sitting *sitting, FILE *out);
+
+/** Log the threshold of each staircase that has taken answers. */
+void gz_sitting_log_thresholds(const struct gz_sitting *sitting, const struct gz_log *log);
 
 /** Close the sitting and set the pointer to NULL. Accepts a pointer to NULL. */
 void gz_sitting_close(struct gz_sitting **sitting);

@@ -518,6 +518,7 @@ enum gz_result gz_window_experiment_outcome(struct gz_window *window)
 		return GZ_OK;
 	const struct gz_answers *answers = state->sitting->answers;
 	gz_run_stop(&state->run, GZ_ERR_CANCELLED, gz_clock_now_ns());
+	gz_sitting_log_thresholds(state->sitting, window->log);
 	const size_t done = gz_answers_done(answers), count = state->sitting->sequence.count;
 	if (gz_answers_next(answers) == count)
 		gz_info(window->log, "%s: all %zu trials are answered", gz_answers_file(answers),
