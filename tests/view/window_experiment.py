@@ -200,6 +200,35 @@ class Experiment(WindowCase):
             values = [float(row["staircase_value"]) for row in those]
             self.assertEqual(values, sorted(values, reverse=True), "right answers: harder")
 
+    def begin_dialog(self, *more):
+        self.viewer = subprocess.Popen(
+            [GAZEVIEW, "--experiment", self.file, "--answers", self.folder, "--gaze", "0.5,0.5",
+             *more], env=self.environment, stderr=subprocess.PIPE, text=True)
+        self.found()
+
+    def type_until(self, seen, *steps):
+        """Give the dialog keys in turn; a key too early is typed again from the start."""
+        deadline = time.monotonic() + 2 * PATIENCE_S
+        while not seen():
+            self.assertLess(time.monotonic(), deadline, "never came")
+            for step in steps:
+                run("xdotool", *step, env=self.environment)
+                time.sleep(0.1)
+
+    def test_dialog_asks_who_takes_part_and_continues_a_session(self):
+        listed = os.path.join(self.folder, "participants.tsv")
+        answers = self.answers.replace("sub-07_ses-2", "sub-07_ses-3")
+        self.begin_dialog("--notes", "calm")
+        field = [("key", "ctrl+a"), ("type", "07"), ("key", "Tab"), ("key", "ctrl+a"),
+                 ("type", "3"), ("key", "Tab"), ("key", "Return")]
+        self.type_until(lambda: os.path.exists(answers), *field)
+        self.answers = answers
+        self.answer(lambda: len(self.rows()) == 1, "space", "1")
+        self.answer(self.ended, "Escape")
+        self.finish(1)
+        with open(listed, encoding="utf-8") as table:
+            self.assertEqual(table.read(), "participant_id\tnotes\nsub-07\tses-3: calm\n")
+
     def recorded_marks(self):
         names = [name for name in os.listdir(self.folder) if name.endswith(".gzl")]
         self.assertEqual(len(names), 1)

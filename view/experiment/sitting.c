@@ -14,7 +14,9 @@ const struct gz_option gz_sitting_option_table[] = {
 	  .help = "run the experiment in this file, full screen; headless: check it and list its "
 		  "trials" },
 	{ "participant", GZ_OPTION_STRING, AT(participant), .max = GZ_PARTICIPANT_SIZE,
-	  .preset = "", .help = "participant's label: letters and digits, such as 07" },
+	  .preset = "",
+	  .help = "participant's label: letters and digits, such as 07; the window asks for a "
+		  "missing one" },
 	{ "session", GZ_OPTION_STRING, AT(session), .max = GZ_PARTICIPANT_SIZE, .preset = "",
 	  .help = "session's label, if there are several: letters and digits" },
 	{ "notes", GZ_OPTION_STRING, AT(notes), .max = GZ_NOTES_SIZE, .preset = "",
@@ -42,11 +44,11 @@ enum gz_result gz_sitting_options_check(const struct gz_sitting_options *options
 		gz_err(log, "--%s: needs an experiment; add --experiment FILE", other);
 		return GZ_ERR_INVAL;
 	}
-	if (!gz_answers_label_valid(options->participant)) {
+	if (options->participant[0] && !gz_answers_label_valid(options->participant)) {
 		gz_err(log,
-		       "--participant%s%s: %s; give letters and digits, as in --participant 07",
-		       options->participant[0] ? " " : "", options->participant,
-		       options->participant[0] ? "not a label" : "missing");
+		       "--participant %s: not a label; give letters and digits, as in "
+		       "--participant 07",
+		       options->participant);
 		return GZ_ERR_INVAL;
 	}
 	if (options->session[0] && !gz_answers_label_valid(options->session)) {

@@ -285,6 +285,11 @@ static enum gz_result check_experiment(const struct gz_view_options *options,
 			    : options->letters                          ? "--letters"
 			    : any_scene_key(options)                    ? "a key of a scene"
 									: NULL;
+	if (!other && options->headless && !options->sitting.participant[0]) {
+		gz_err(log, "--participant: missing; give letters and digits, as in "
+			    "--participant 07");
+		return GZ_ERR_INVAL;
+	}
 	if (!other)
 		return gz_sitting_options_check(&options->sitting, log);
 	gz_err(log,

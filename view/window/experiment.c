@@ -108,14 +108,9 @@ static void begin_trials(struct gz_window *window)
 	gz_run_begin(&state->run, &start);
 }
 
-static enum gz_result open_experiment(struct gz_window *window)
+static enum gz_result open_sitting(struct gz_window *window,
+				   const struct gz_sitting_options *options)
 {
-	const struct gz_sitting_options *options = &window->options->sitting;
-	if (!options->file[0])
-		return GZ_OK;
-	window->experiment = calloc(1, sizeof *window->experiment);
-	if (!window->experiment)
-		return GZ_ERR_NO_MEM;
 	struct gz_window_experiment *state = window->experiment;
 	window->alone = &gz_window_experiment_part;
 	window->picture_hidden = true;
@@ -134,6 +129,16 @@ static enum gz_result open_experiment(struct gz_window *window)
 	if (r == GZ_OK)
 		begin_trials(window);
 	return r;
+}
+
+/* Without a participant the part experiment_start asks for one first. */
+static enum gz_result open_experiment(struct gz_window *window)
+{
+	const struct gz_sitting_options *options = &window->options->sitting;
+	if (!options->file[0] || !options->participant[0])
+		return GZ_OK;
+	window->experiment = calloc(1, sizeof *window->experiment);
+	return window->experiment ? open_sitting(window, options) : GZ_ERR_NO_MEM;
 }
 
 /* Full screen, also when the window loses the focus. */
@@ -515,7 +520,7 @@ enum gz_result gz_window_experiment_outcome(struct gz_window *window)
 {
 	struct gz_window_experiment *state = window->experiment;
 	if (!state)
-		return GZ_OK;
+		return window->options->sitting.file[0] ? GZ_ERR_CANCELLED : GZ_OK;
 	const struct gz_answers *answers = state->sitting->answers;
 	gz_run_stop(&state->run, GZ_ERR_CANCELLED, gz_clock_now_ns());
 	gz_sitting_log_thresholds(state->sitting, window->log);
@@ -542,6 +547,20 @@ static void close_experiment(struct gz_window *window)
 	free(state);
 	window->experiment = NULL;
 	window->alone = NULL;
+}
+
+enum gz_result gz_window_experiment_begin(struct gz_window *window,
+					  const struct gz_sitting_options *options)
+{
+	window->experiment = calloc(1, sizeof *window->experiment);
+	if (!window->experiment)
+		return GZ_ERR_NO_MEM;
+	enum gz_result r = open_sitting(window, options);
+	if (r == GZ_OK)
+		r = open_experiment_window(window);
+	if (r != GZ_OK)
+		close_experiment(window);
+	return r;
 }
 
 const struct gz_window_part gz_window_experiment_part = {

@@ -71,8 +71,17 @@ enum gz_result gz_experiment_show(struct gz_window *window,
 /** Release every scene. */
 void gz_experiment_release_scenes(struct gz_window *window);
 
+/**
+ * Begin the experiment, which takes the window.
+ *
+ * @param options  with a participant; borrowed, outlives the window
+ * @return what gz_sitting_open() returns; logged. Then there is no experiment.
+ */
+enum gz_result gz_window_experiment_begin(struct gz_window *window,
+					  const struct gz_sitting_options *options);
+
 /** Result of the experiment: GZ_OK without one and once all trials are answered, GZ_ERR_CANCELLED
- * if it was left, else why it ended. Logged. */
+ * if it was left, or did not begin, else why it ended. Logged. */
 enum gz_result gz_window_experiment_outcome(struct gz_window *window);
 
 #endif

@@ -178,6 +178,7 @@ struct gz_window_part {
 	ROW(capture)       /* writes pictures and videos; behind all that paint */ \
 	ROW(basics)        /* methods, settings, cursor; behind all whose panels Escape closes */ \
 	ROW(unsaved)       /* asks before changes are lost, and quits; last to take Escape */ \
+	ROW(experiment_start) /* asks who takes part, alone */ \
 	ROW(experiment)    /* runs an experiment, alone */
 /* clang-format on */
 

@@ -81,6 +81,7 @@ struct gz_window {
 	struct gz_window_trail *trail;
 	struct gz_window_transfer *transfer;
 	struct gz_window_unsaved *unsaved;
+	struct gz_window_experiment_start *experiment_start;
 	/** Of part experiment, which makes it itself; NULL: there is no experiment. */
 	struct gz_window_experiment *experiment;
 
