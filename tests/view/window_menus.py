@@ -218,6 +218,8 @@ class Menus(WindowCase):
         self.tool("click", 4)
         self.until(lambda p: p.part(100, 60, 130, 90) != moved.part(100, 60, 130, 90), "next slice")
         self.drag((105, 96), (135, 96), key="shift")
+        name = self.wait_for(lambda: self.tool("getwindowname", self.window), "a title")
+        self.assertTrue(name.startswith("*"), "a distance is lost without a question")
         self.drag((120, 90), (160, 90), button=3)
         keys = dict(line.split(" = ", 1) for line in self.saved() if " = " in line)
         ends = [float(share) for share in keys["distances"].split()]

@@ -67,10 +67,11 @@ static void begin_history(struct gz_window *window)
 }
 
 /* Not among what is asked about before the scene is left: where one looks from, and what is shown
- * of it in the window. */
+ * of it in the window; but distances were measured by hand. */
 static bool is_worth_saving(const struct gz_option *option)
 {
-	return strncmp(option->key, "camera.", 7) != 0 && strncmp(option->key, "view.", 5) != 0;
+	return (strncmp(option->key, "camera.", 7) != 0 && strncmp(option->key, "view.", 5) != 0) ||
+	       strcmp(option->key, "view.distances") == 0;
 }
 
 bool gz_window_scene_changed(const struct gz_window *window)
