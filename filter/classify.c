@@ -306,14 +306,23 @@ static void update_quick_saccade(struct gz_classify_state *state,
 	gz_median_follow(&quick->noise_deg_s, speed_deg_s, gain);
 }
 
-/* Label sample @p index by what a forest makes of the newest features. */
+/* The forests are asked no more often than this. Chosen: the period of the fastest recordings that
+ * they learned from, less a quarter for jitter in the time stamps. The features are averages over
+ * longer times (SMOOTH_US in classifier/movement.c), so in between they hardly change. */
+static const int64_t ASK_NS = 1500 * GZ_NS_PER_US;
+
+/* Label sample @p index by what a forest makes of the newest features; without them as the sample
+ * before. */
 static void label_by_forest(struct gz_classify_state *state, const struct gz_forest *forest,
-			    struct gz_forest_memory *memory,
-			    const float features[GZ_MOVEMENT_FEATURES], uint64_t index)
+			    struct gz_forest_memory *memory, const float *features, uint64_t index)
 {
 	int32_t scores[GZ_FOREST_CLASSES];
 	struct gz_classify_entry *entry = gz_classify_at(state, index);
 	const struct gz_forest_lists *lists = gz_forest_lists_of(forest);
+	if (entry->valid && !features) {
+		entry->learned = memory->last;
+		return;
+	}
 	if (entry->valid && lists)
 		gz_forest_lists_score(lists, features, scores);
 	else if (entry->valid)
@@ -321,19 +330,36 @@ static void label_by_forest(struct gz_classify_state *state, const struct gz_for
 	entry->learned = gz_forest_label(memory, entry->valid ? scores : NULL, entry->still_scene);
 }
 
+/* Whether the label of sample @p index cannot be that of the sample before. */
+static bool needs_own_label(struct gz_classify_state *state, uint64_t index)
+{
+	if (index == 0)
+		return true;
+	const struct gz_classify_entry *one = gz_classify_at(state, index);
+	const struct gz_classify_entry *before = gz_classify_at(state, index - 1);
+	return one->valid != before->valid || one->still_scene != before->still_scene;
+}
+
 /* Ask the forests what the newest sample is, and what the one was whose certain label is due. */
 static void ask_forests(struct gz_classify_state *state, const struct gz_classify_params *params,
 			const struct gz_display *display, const struct gz_classify_input *input)
 {
-	float features[GZ_MOVEMENT_FEATURES];
+	float features[GZ_MOVEMENT_FEATURES], *asked = NULL;
 	const struct gz_movement_input measured = { input->time_ns, input->valid, input->raw };
-	if (!gz_movement_step(&state->movement, display, &measured, features))
-		return;
 	const uint64_t newest = state->count - 1;
 	const uint64_t delay = samples_within(state, CERTAIN_WITHIN_MS);
-	label_by_forest(state, &gz_forest_at_once, &state->at_once_memory, features, newest);
-	if (delay > 0 && delay <= newest && delay <= gz_classify_delay(state, params))
-		label_by_forest(state, &gz_forest_certain, &state->certain_memory, features,
+	const bool certain =
+		delay > 0 && delay <= newest && delay <= gz_classify_delay(state, params);
+	if (input->time_ns - state->asked_ns >= ASK_NS || needs_own_label(state, newest) ||
+	    (certain && needs_own_label(state, newest - delay))) {
+		state->asked_ns = input->time_ns;
+		asked = features;
+	}
+	if (!gz_movement_step(&state->movement, display, &measured, asked))
+		return;
+	label_by_forest(state, &gz_forest_at_once, &state->at_once_memory, asked, newest);
+	if (certain)
+		label_by_forest(state, &gz_forest_certain, &state->certain_memory, asked,
 				newest - delay);
 }
 

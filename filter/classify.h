@@ -164,6 +164,7 @@ struct gz_classify_state {
 	/* Used if the labels are learned: */
 	struct gz_movement movement;
 	struct gz_forest_memory at_once_memory, certain_memory;
+	int64_t asked_ns; /**< when the forests were asked last; set once a sample is there */
 };
 
 /** The newest sample as the steps after this one get it; there must have been one. */

@@ -25,6 +25,24 @@ static inline unsigned char *take_room(struct gz_pack *pack, size_t size)
 	return room;
 }
 
+/* Room for a key and then @p size bytes of its value; at the value. NULL if the message is full. */
+static inline unsigned char *take_keyed_room(struct gz_pack *pack, const char *key, size_t size)
+{
+	if (!key)
+		return take_room(pack, size);
+	size_t length = strlen(key);
+	if (length >= 32) {
+		gz_pack_text(pack, NULL, key);
+		return take_room(pack, size);
+	}
+	unsigned char *room = take_room(pack, 1 + length + size);
+	if (!room)
+		return NULL;
+	*room = (unsigned char)(0xa0 | length);
+	memcpy(room + 1, key, length);
+	return room + 1 + length;
+}
+
 static void append_bytes(struct gz_pack *pack, const char *bytes, size_t size)
 {
 	unsigned char *room = take_room(pack, size);
@@ -32,18 +50,19 @@ static void append_bytes(struct gz_pack *pack, const char *bytes, size_t size)
 		memcpy(room, bytes, size);
 }
 
-static void append_byte(struct gz_pack *pack, unsigned byte)
+/* A key, and a value that is one byte. */
+static inline void pack_byte(struct gz_pack *pack, const char *key, unsigned byte)
 {
-	unsigned char *room = take_room(pack, 1);
+	unsigned char *room = take_keyed_room(pack, key, 1);
 	if (room)
 		*room = (unsigned char)byte;
 }
 
-/* A format and a number of @p size bytes, which is a constant for each caller. */
-static inline void append_number(struct gz_pack *pack, unsigned char format, uint64_t value,
-				 size_t size)
+/* A key, a format and a number of @p size bytes, which is a constant for each caller. */
+static inline void pack_number(struct gz_pack *pack, const char *key, unsigned char format,
+			       uint64_t value, size_t size)
 {
-	unsigned char *room = take_room(pack, 1 + size);
+	unsigned char *room = take_keyed_room(pack, key, 1 + size);
 	if (!room)
 		return;
 	value = htobe64(value);
@@ -51,19 +70,17 @@ static inline void append_number(struct gz_pack *pack, unsigned char format, uin
 	memcpy(room + 1, (const unsigned char *)&value + sizeof value - size, size);
 }
 
-/* The head of a text of @p size bytes. */
-static void append_text_head(struct gz_pack *pack, size_t size)
+/* A key, and the head of a text of @p size bytes. */
+static void pack_text_head(struct gz_pack *pack, const char *key, size_t size)
 {
-	if (size < 32) {
-		append_byte(pack, 0xa0 | (unsigned)size);
-	} else if (size <= UINT8_MAX) {
-		append_byte(pack, 0xd9);
-		append_byte(pack, (unsigned)size);
-	} else if (size <= UINT16_MAX) {
-		append_number(pack, 0xda, (uint16_t)size, 2);
-	} else {
-		append_number(pack, 0xdb, (uint32_t)size, 4);
-	}
+	if (size < 32)
+		pack_byte(pack, key, 0xa0 | (unsigned)size);
+	else if (size <= UINT8_MAX)
+		pack_number(pack, key, 0xd9, size, 1);
+	else if (size <= UINT16_MAX)
+		pack_number(pack, key, 0xda, size, 2);
+	else
+		pack_number(pack, key, 0xdb, size, 4);
 }
 
 void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message)
@@ -83,41 +100,29 @@ enum gz_result gz_pack_end(struct gz_pack *pack)
 	return GZ_ERR_FULL;
 }
 
-static void pack_key(struct gz_pack *pack, const char *key)
-{
-	if (!key)
-		return;
-	size_t size = strlen(key);
-	append_text_head(pack, size);
-	append_bytes(pack, key, size);
-}
-
 void gz_pack_map(struct gz_pack *pack, const char *key, size_t pairs)
 {
-	pack_key(pack, key);
 	if (pairs < 16)
-		append_byte(pack, 0x80 | (unsigned)pairs);
+		pack_byte(pack, key, 0x80 | (unsigned)pairs);
 	else if (pairs <= UINT16_MAX)
-		append_number(pack, 0xde, (uint16_t)pairs, 2);
+		pack_number(pack, key, 0xde, pairs, 2);
 	else
-		append_number(pack, 0xdf, (uint32_t)pairs, 4);
+		pack_number(pack, key, 0xdf, pairs, 4);
 }
 
 void gz_pack_array(struct gz_pack *pack, const char *key, size_t elements)
 {
-	pack_key(pack, key);
 	if (elements < 16)
-		append_byte(pack, 0x90 | (unsigned)elements);
+		pack_byte(pack, key, 0x90 | (unsigned)elements);
 	else if (elements <= UINT16_MAX)
-		append_number(pack, 0xdc, (uint16_t)elements, 2);
+		pack_number(pack, key, 0xdc, elements, 2);
 	else
-		append_number(pack, 0xdd, (uint32_t)elements, 4);
+		pack_number(pack, key, 0xdd, elements, 4);
 }
 
 void gz_pack_nil(struct gz_pack *pack, const char *key)
 {
-	pack_key(pack, key);
-	append_byte(pack, 0xc0);
+	pack_byte(pack, key, 0xc0);
 }
 
 /* Length of the UTF-8 character at @p text, bytes; 0 if it is not one. RFC 3629, section 4. */
@@ -148,9 +153,8 @@ static size_t utf8_character_length(const unsigned char *text)
 
 void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 {
-	pack_key(pack, key);
 	size_t left = strlen(text), good = 0;
-	append_text_head(pack, left);
+	pack_text_head(pack, key, left);
 	while (good < left) {
 		/* The final NUL is no continuation byte, so this never reads past it. */
 		size_t length = utf8_character_length((const unsigned char *)text + good);
@@ -159,7 +163,7 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 			continue;
 		}
 		append_bytes(pack, text, good);
-		append_byte(pack, '?');
+		append_bytes(pack, "?", 1);
 		text += good + 1;
 		left -= good + 1;
 		good = 0;
@@ -169,83 +173,68 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 
 void gz_pack_bool(struct gz_pack *pack, const char *key, bool value)
 {
-	pack_key(pack, key);
-	append_byte(pack, value ? 0xc3 : 0xc2);
+	pack_byte(pack, key, value ? 0xc3 : 0xc2);
 }
 
-static void append_unsigned(struct gz_pack *pack, uint64_t value)
+static void pack_negative(struct gz_pack *pack, const char *key, int64_t value)
 {
-	if (value < 0x80) {
-		append_byte(pack, (unsigned)value);
-	} else if (value <= UINT8_MAX) {
-		append_byte(pack, 0xcc);
-		append_byte(pack, (unsigned)value);
-	} else if (value <= UINT16_MAX) {
-		append_number(pack, 0xcd, (uint16_t)value, 2);
-	} else if (value <= UINT32_MAX) {
-		append_number(pack, 0xce, (uint32_t)value, 4);
-	} else {
-		append_number(pack, 0xcf, value, 8);
-	}
-}
-
-static void append_negative(struct gz_pack *pack, int64_t value)
-{
-	if (value >= -32) {
-		append_byte(pack, 0xff & (unsigned)value);
-	} else if (value >= INT8_MIN) {
-		append_byte(pack, 0xd0);
-		append_byte(pack, 0xff & (unsigned)value);
-	} else if (value >= INT16_MIN) {
-		append_number(pack, 0xd1, (uint16_t)value, 2);
-	} else if (value >= INT32_MIN) {
-		append_number(pack, 0xd2, (uint32_t)value, 4);
-	} else {
-		append_number(pack, 0xd3, (uint64_t)value, 8);
-	}
+	if (value >= -32)
+		pack_byte(pack, key, 0xff & (unsigned)value);
+	else if (value >= INT8_MIN)
+		pack_number(pack, key, 0xd0, (uint64_t)value, 1);
+	else if (value >= INT16_MIN)
+		pack_number(pack, key, 0xd1, (uint64_t)value, 2);
+	else if (value >= INT32_MIN)
+		pack_number(pack, key, 0xd2, (uint64_t)value, 4);
+	else
+		pack_number(pack, key, 0xd3, (uint64_t)value, 8);
 }
 
 void gz_pack_int(struct gz_pack *pack, const char *key, int64_t value)
 {
-	pack_key(pack, key);
 	if (value < 0)
-		append_negative(pack, value);
+		pack_negative(pack, key, value);
 	else
-		append_unsigned(pack, (uint64_t)value);
+		gz_pack_uint(pack, key, (uint64_t)value);
 }
 
 void gz_pack_uint(struct gz_pack *pack, const char *key, uint64_t value)
 {
-	pack_key(pack, key);
-	append_unsigned(pack, value);
+	if (value < 0x80)
+		pack_byte(pack, key, (unsigned)value);
+	else if (value <= UINT8_MAX)
+		pack_number(pack, key, 0xcc, value, 1);
+	else if (value <= UINT16_MAX)
+		pack_number(pack, key, 0xcd, value, 2);
+	else if (value <= UINT32_MAX)
+		pack_number(pack, key, 0xce, value, 4);
+	else
+		pack_number(pack, key, 0xcf, value, 8);
 }
 
 void gz_pack_fixed_int64(struct gz_pack *pack, const char *key, int64_t value)
 {
-	pack_key(pack, key);
-	append_number(pack, 0xd3, (uint64_t)value, 8);
+	pack_number(pack, key, 0xd3, (uint64_t)value, 8);
 }
 
 void gz_pack_float(struct gz_pack *pack, const char *key, float value)
 {
 	uint32_t bits;
-	pack_key(pack, key);
 	memcpy(&bits, &value, sizeof bits);
 	if (isfinite(value))
-		append_number(pack, 0xca, bits, 4);
+		pack_number(pack, key, 0xca, bits, 4);
 	else
-		append_byte(pack, 0xc0);
+		gz_pack_nil(pack, key);
 }
 
 void gz_pack_double(struct gz_pack *pack, const char *key, double value)
 {
 	uint64_t bits;
-	pack_key(pack, key);
 	memcpy(&bits, &value, sizeof bits);
 	if (isfinite(value))
-		append_number(pack, 0xcb, bits, 8);
+		pack_number(pack, key, 0xcb, bits, 8);
 	else
-		append_byte(pack, 0xc0);
+		gz_pack_nil(pack, key);
 }
 
 void gz_pack_doubles(struct gz_pack *pack, const char *key, const double *values, size_t count)

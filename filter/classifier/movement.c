@@ -594,12 +594,25 @@ static void put_edges(const struct gz_display *display, const double here[2],
 	put(row, fmax(-3, fmin(3, fabs(here[1]) - corner[1])));
 }
 
+static void put_features(struct gz_movement *state, const struct gz_display *display,
+			 const struct places *places, double speed_deg_s, float *out_features)
+{
+	struct feature_row row = { out_features };
+	put_ticks(state, places, &row);
+	put_windows(state, places, &row);
+	put_turns(places, &row);
+	put_burst(state, speed_deg_s, &row);
+	put_stretch(state, &row);
+	put_edges(display, places->now, &row);
+	put(&row, entry_at(state, state->count - 1)->valid ? 1 : 0);
+}
+
 bool gz_movement_step(struct gz_movement *state, const struct gz_display *display,
-		      const struct gz_movement_input *input,
-		      float out_features[GZ_MOVEMENT_FEATURES])
+		      const struct gz_movement_input *input, float *out_features)
 {
 	double step_s;
-	memset(out_features, 0, GZ_MOVEMENT_FEATURES * sizeof out_features[0]);
+	if (out_features)
+		memset(out_features, 0, GZ_MOVEMENT_FEATURES * sizeof out_features[0]);
 	struct gz_movement_entry *entry = add_movement_entry(state, display, input, &step_s);
 	state->any_valid = state->any_valid || input->valid;
 	advance_cursors(state);
@@ -620,14 +633,7 @@ bool gz_movement_step(struct gz_movement *state, const struct gz_display *displa
 		follow_noise(state, speed_deg_s, step_s);
 	follow_stretch(state, entry->time_us, fast || !input->valid);
 	follow_means(state, !input->valid, begins, step_s);
-
-	struct feature_row row = { out_features };
-	put_ticks(state, &places, &row);
-	put_windows(state, &places, &row);
-	put_turns(&places, &row);
-	put_burst(state, speed_deg_s, &row);
-	put_stretch(state, &row);
-	put_edges(display, places.now, &row);
-	put(&row, input->valid ? 1 : 0);
+	if (out_features)
+		put_features(state, display, &places, speed_deg_s, out_features);
 	return true;
 }

@@ -107,13 +107,13 @@ struct gz_movement_input {
  * Take one sample.
  *
  * @param display  passes gz_display_valid()
- * @param[out] out_features  all finite; all zero before the first valid sample
+ * @param[out] out_features  GZ_MOVEMENT_FEATURES of them, all finite; all zero before the first
+ *                           valid sample. NULL: not wanted
  * @return whether there was a valid sample so far
  *
  * Does not allocate.
  */
 bool gz_movement_step(struct gz_movement *state, const struct gz_display *display,
-		      const struct gz_movement_input *input,
-		      float out_features[GZ_MOVEMENT_FEATURES]);
+		      const struct gz_movement_input *input, float *out_features);
 
 #endif

@@ -48,15 +48,22 @@ static void feed_open(struct feed *feed, double rate_hz)
 	*feed = (struct feed) { .display = wide_display(), .period_s = 1 / rate_hz };
 }
 
-static void feed_point(struct feed *feed, double x_deg, double y_deg, bool valid)
+/* @param features  what comes of it; NULL: not wanted */
+static void feed_point_to(struct feed *feed, double x_deg, double y_deg, bool valid,
+			  float *features)
 {
 	const struct gz_movement_input input = {
 		.time_ns = GZ_NS_PER_S + (int64_t)(feed->time_s * 1e9),
 		.valid = valid,
 		.point = { (float)(0.5 + x_deg / 100), (float)(0.5 + y_deg / 100) },
 	};
-	(void)gz_movement_step(&feed->movement, &feed->display, &input, feed->features);
+	(void)gz_movement_step(&feed->movement, &feed->display, &input, features);
 	feed->time_s += feed->period_s;
+}
+
+static void feed_point(struct feed *feed, double x_deg, double y_deg, bool valid)
+{
+	feed_point_to(feed, x_deg, y_deg, valid, feed->features);
 }
 
 static double feature_of(const struct feed *feed, const char *name)
@@ -158,6 +165,57 @@ static void any_samples_give_finite_features_and_the_same_again(void **state)
 		for (size_t i = 0; i < GZ_MOVEMENT_FEATURES; i++)
 			assert_true(isfinite(feed.features[i]));
 		assert_memory_equal(feed.features, copy.features, sizeof feed.features);
+	}
+}
+
+static void samples_without_features_count_for_the_next_ones(void **state)
+{
+	(void)state;
+	static struct feed all, some;
+	struct gz_random random = gz_random_seeded(4, 4);
+	feed_open(&all, 1200);
+	feed_open(&some, 1200);
+	for (int k = 0; k < 5000; k++) {
+		double x = gz_random_normal(&random) * (k % 300 < 20 ? 5 : 0.05);
+		bool valid = k % 700 > 40;
+		feed_point(&all, x, x, valid);
+		feed_point_to(&some, x, x, valid, k % 3 == 0 ? some.features : NULL);
+		if (k % 3 == 0)
+			assert_memory_equal(some.features, all.features, sizeof all.features);
+	}
+}
+
+/* Forests are asked at most every 1.5 ms, but at once where something begins to be measured. */
+static void forests_are_not_asked_more_often_than_they_learned(void **state)
+{
+	(void)state;
+	static struct gz_classify_state classify;
+	const struct gz_classify_params params = gz_pipeline_default_params().classify;
+	const struct gz_display display = wide_display();
+	for (int i = 0; i < RATE_COUNT; i++) {
+		int asked = 0, samples = (int)RATES_HZ[i];
+		classify = (struct gz_classify_state) { .count = 0 };
+		for (int k = 0; k < samples; k++) {
+			int64_t time_ns = (int64_t)(1e9 * (k + 1) / RATES_HZ[i]);
+			bool valid = k != samples / 2;
+			const struct gz_classify_input input = {
+				.seq = (uint64_t)k,
+				.time_ns = time_ns,
+				.valid = valid,
+				.raw = { 0.5F, 0.5F },
+				.point = { 0.5F, 0.5F },
+				.confidence = 1,
+			};
+			(void)gz_classify_step(&classify, &params, &display, &input);
+			bool now = classify.asked_ns == time_ns;
+			if (k == 0 || k == samples / 2 + 1)
+				assert_true(now);
+			asked += now;
+		}
+		if (RATES_HZ[i] <= 500)
+			assert_int_equal(asked, samples);
+		else
+			CHECK_BETWEEN(asked, 495, 670);
 	}
 }
 
@@ -273,6 +331,8 @@ TEST_SUITE(classifier)
 		cmocka_unit_test(a_burst_is_measured),
 		cmocka_unit_test(a_loss_is_measured_and_holds_the_place),
 		cmocka_unit_test(any_samples_give_finite_features_and_the_same_again),
+		cmocka_unit_test(samples_without_features_count_for_the_next_ones),
+		cmocka_unit_test(forests_are_not_asked_more_often_than_they_learned),
 		cmocka_unit_test(lists_of_questions_give_the_scores_of_the_trees),
 		cmocka_unit_test(ringing_follows_saccades_only_and_else_is_the_next_likeliest),
 		cmocka_unit_test(a_forest_that_does_not_know_ringing_never_finds_it),
