@@ -143,6 +143,8 @@ static void draw_question(struct gz_window *window)
 static void draw_start(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	(void)gaze;
+	if (window->alone != &gz_window_experiment_start_part)
+		return;
 	struct gz_window_experiment_start *self = window->experiment_start;
 	const struct gz_panel_place place = {
 		.at = GZ_PANEL_MIDDLE,
