@@ -183,7 +183,7 @@ enum {
 	AT_DIMS = 24,
 	AT_INDEX_CRC = 36,
 	AT_CELLS_CRC = 40,
-	AT_ZERO = 44,
+	AT_SPACING_ASSUMED = 44,
 	AT_SPACING = 48,
 	AT_SLOPE = 72,
 	AT_INTERCEPT = 80,
@@ -191,7 +191,7 @@ enum {
 	AT_GREATEST = 96,
 	AT_BRICKS = 104,
 	AT_SIZE = 112,
-	AT_ZERO_TOO = 120,
+	AT_ZERO = 120,
 	AT_CRC = 124,
 };
 
@@ -209,6 +209,7 @@ void gz_brick_header_encode(const struct gz_brick_header *header,
 	put32(out_bytes + AT_TYPE, (uint32_t)header->type);
 	put32(out_bytes + AT_EDGE, GZ_BRICK_EDGE);
 	put32(out_bytes + AT_ORIENTED, header->oriented);
+	put32(out_bytes + AT_SPACING_ASSUMED, header->spacing_assumed);
 	put32(out_bytes + AT_INDEX_CRC, header->index_crc);
 	put32(out_bytes + AT_CELLS_CRC, header->cells_crc);
 	for (size_t axis = 0; axis < 3; axis++) {
@@ -252,6 +253,7 @@ const char *gz_brick_header_decode(const uint8_t bytes[GZ_BRICK_HEADER_BYTES],
 {
 	struct gz_brick_header header = {
 		.oriented = get32(bytes + AT_ORIENTED) == 1,
+		.spacing_assumed = get32(bytes + AT_SPACING_ASSUMED) == 1,
 		.slope = get_double(bytes + AT_SLOPE),
 		.intercept = get_double(bytes + AT_INTERCEPT),
 		.stored_min = get_double(bytes + AT_LEAST),
@@ -269,7 +271,7 @@ const char *gz_brick_header_decode(const uint8_t bytes[GZ_BRICK_HEADER_BYTES],
 		return "damaged header; write it again";
 	if (get32(bytes + AT_TYPE) >= GZ_VOXEL_TYPE_COUNT ||
 	    get32(bytes + AT_EDGE) != GZ_BRICK_EDGE || get32(bytes + AT_ORIENTED) > 1 ||
-	    get32(bytes + AT_ZERO) != 0 || get32(bytes + AT_ZERO_TOO) != 0)
+	    get32(bytes + AT_SPACING_ASSUMED) > 1 || get32(bytes + AT_ZERO) != 0)
 		return "an unknown type, edge or flag in its header";
 	header.type = (enum gz_voxel_type)get32(bytes + AT_TYPE);
 	for (size_t axis = 0; axis < 3; axis++) {

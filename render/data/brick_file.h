@@ -101,7 +101,7 @@ struct gz_brick_header {
 	int dims[3];
 	double spacing[3];
 	enum gz_voxel_type type;
-	bool oriented;
+	bool oriented, spacing_assumed; /**< see struct gz_volume */
 	double slope, intercept, stored_min, stored_max;
 	uint64_t brick_count; /**< entries of the index */
 	uint64_t file_size;

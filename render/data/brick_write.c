@@ -244,6 +244,7 @@ static enum gz_result write_rest(struct writer *writer, const struct gz_volume *
 	struct gz_brick_header header = {
 		.type = volume->type,
 		.oriented = volume->oriented,
+		.spacing_assumed = volume->spacing_assumed,
 		.slope = volume->slope,
 		.intercept = volume->intercept,
 		.stored_min = volume->stored_min,

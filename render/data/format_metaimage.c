@@ -20,7 +20,7 @@ struct metaimage {
 	struct gz_voxel_source source;
 	int dimension; /* 0 = not given yet */
 	int sizes[AXES_MAX];
-	bool has_sizes, has_type, has_spacing, has_matrix, has_data;
+	bool has_sizes, has_type, has_spacing, has_size, has_matrix, has_data;
 	char anatomical[4]; /* "RAI", or empty */
 	int header_size;
 	int file_axes; /* that each of several files holds; 0: not given */
@@ -76,6 +76,7 @@ static enum gz_result take_meta_size(struct metaimage *meta, char *value)
 		return refuse_meta(meta, "ElementSize", "write one number an axis");
 	if (!meta->has_spacing)
 		memcpy(meta->layout.spacing, spacing, sizeof meta->layout.spacing);
+	meta->has_size = true;
 	return GZ_OK;
 }
 
@@ -312,6 +313,7 @@ static enum gz_result finish_meta_layout(struct metaimage *meta)
 	if (meta->layout.more_follows)
 		gz_warn(meta->head.log, "%s: has a fifth dimension; only its first part is shown",
 			meta->head.path);
+	meta->layout.spacing_assumed = !meta->has_spacing && !meta->has_size;
 	meta->source.skip = meta->header_size;
 	const enum gz_result result = gz_voxel_source_share(&meta->source, &meta->head, meta->sizes,
 							    meta->dimension, meta->file_axes);

@@ -111,6 +111,7 @@ static void take_mgh_orientation(struct mgh_file *file)
 			file->layout.spacing[axis] = mgh_real(file->bytes, AT_SPACING + 4 * axis);
 	}
 	file->layout.oriented = true;
+	file->layout.spacing_assumed = !good;
 	if (!good)
 		gz_info(file->log,
 			"%s: says nothing of its orientation; taken as coronal slices of 1 mm, as "

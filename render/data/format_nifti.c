@@ -358,6 +358,7 @@ static void guess_analyze_orientation(struct nifti_file *file)
 	for (int axis = 0; axis < 3; axis++) {
 		const double spacing = fabs(file->layout.spacing[axis]);
 		file->layout.spacing[axis] = spacing > 0 ? spacing : 1;
+		file->layout.spacing_assumed = file->layout.spacing_assumed || !(spacing > 0);
 	}
 	gz_warn(file->log,
 		"%s: an ANALYZE header does not say where left is; x is taken to run to the left, "

@@ -489,6 +489,7 @@ static void place_nrrd_axes(struct nrrd *nrrd, int first)
 	struct gz_import_layout *layout = &nrrd->layout;
 	double mm[3];
 	if (!nrrd->has_directions) {
+		layout->spacing_assumed = !nrrd->has_spacings;
 		take_lengths(nrrd, (const char(*)[UNIT_SIZE])nrrd->units + first, mm);
 		for (int axis = 0; axis < 3; axis++)
 			layout->spacing[axis] =
@@ -637,14 +638,19 @@ static int print_nrrd_header(const struct gz_volume *volume, const struct nrrd_f
 	const size_t channels = written_channels(volume);
 	const int *dims = volume->dims;
 	const double *s = volume->spacing;
+	char space[64], directions[128];
+	snprintf(space, sizeof space, "%s",
+		 volume->oriented ? "space: right-anterior-superior\n" : "space dimension: 3\n");
+	snprintf(directions, sizeof directions,
+		 "space directions: %s(%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n",
+		 axes[channels].direction, s[0], s[1], s[2]);
+	/* What is not known is not stated. */
+	const bool placed = volume->oriented || !volume->spacing_assumed;
 	return snprintf(out, size,
-			"NRRD0005\ntype: %s\ndimension: %s\n%s: %s\nsizes: %s%d %d %d\n"
-			"space directions: %s(%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n%s"
+			"NRRD0005\ntype: %s\ndimension: %s\n%ssizes: %s%d %d %d\n%s%s"
 			"endian: %s\nencoding: raw\n\n",
-			form->name, axes[channels].dimension,
-			volume->oriented ? "space" : "space dimension",
-			volume->oriented ? "right-anterior-superior" : "3", axes[channels].size,
-			dims[0], dims[1], dims[2], axes[channels].direction, s[0], s[1], s[2],
+			form->name, axes[channels].dimension, placed ? space : "",
+			axes[channels].size, dims[0], dims[1], dims[2], placed ? directions : "",
 			axes[channels].kinds, gz_host_big_endian() ? "big" : "little");
 }
 

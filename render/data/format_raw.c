@@ -23,7 +23,11 @@ static enum gz_result load_raw(const struct gz_volume_file *file, struct gz_volu
 		return GZ_ERR_INVAL;
 	}
 	memcpy(layout.dims, raw->dims, sizeof layout.dims);
-	memcpy(layout.spacing, raw->spacing, sizeof layout.spacing);
+	for (int axis = 0; axis < 3; axis++) {
+		const bool known = raw->spacing[axis] != 0;
+		layout.spacing[axis] = known ? raw->spacing[axis] : 1;
+		layout.spacing_assumed = layout.spacing_assumed || !known;
+	}
 	layout.type = raw->type;
 	layout.channels = raw->channels;
 	layout.big_endian = raw->big_endian;

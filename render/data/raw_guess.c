@@ -406,7 +406,8 @@ static void add_guess(struct guesses *guesses, const struct shape *shape,
 			    .big_endian = name->big_endian && gz_raw_type_size(type->type) > 1 },
 	};
 	memcpy(guess.layout.dims, shape->dims, sizeof guess.layout.dims);
-	memcpy(guess.layout.spacing, name->spacing, sizeof guess.layout.spacing);
+	if (name->has_spacing)
+		memcpy(guess.layout.spacing, name->spacing, sizeof guess.layout.spacing);
 	const uint64_t bytes = gz_raw_layout_bytes(&guess.layout);
 	if (bytes == 0 || (guesses->bytes > 0 && bytes != guesses->bytes))
 		return;
@@ -626,4 +627,14 @@ uint64_t gz_raw_file_bytes(const char *path)
 	}
 	close(fd);
 	return bytes;
+}
+
+bool gz_raw_name_contradicts(const char *name, uint64_t bytes, struct gz_raw_layout *out_layout)
+{
+	struct gz_raw_guess named = { 0 };
+	if (bytes == 0 || gz_raw_guess(name, 0, &named, 1) == 0 ||
+	    gz_raw_layout_bytes(&named.layout) == bytes)
+		return false;
+	*out_layout = named.layout;
+	return true;
 }

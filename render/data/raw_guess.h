@@ -48,6 +48,16 @@ size_t gz_raw_guess(const char *name, uint64_t bytes, struct gz_raw_guess *out_g
 uint64_t gz_raw_layout_bytes(const struct gz_raw_layout *layout);
 
 /**
+ * Whether the name tells a layout of another size than the file has: then a part of the file is
+ * missing, or the name is wrong, and guesses by its size are not to be trusted.
+ *
+ * @param name   as of gz_raw_guess()
+ * @param bytes  of the voxels; 0 if not known: then false
+ * @param[out] out_layout  what the name tells, if true
+ */
+bool gz_raw_name_contradicts(const char *name, uint64_t bytes, struct gz_raw_layout *out_layout);
+
+/**
  * The size of a raw file once decompressed, bytes: the file's size; for .zst the size in its first
  * frame, for .gz the size at its end, if it is plausible.
  *

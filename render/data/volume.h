@@ -147,8 +147,9 @@ struct gz_brick_pool;
 
 /** A volume. Read-only once loaded. Threads may share it, except for its bricks. */
 struct gz_volume {
-	int dims[3];       /**< voxels along x (right), y (front), z (up): x varies fastest */
-	double spacing[3]; /**< between voxel centres, mm or whatever the file has; above 0 */
+	int dims[3];          /**< voxels along x (right), y (front), z (up): x varies fastest */
+	double spacing[3];    /**< between voxel centres, mm or whatever the file has; above 0 */
+	bool spacing_assumed; /**< nobody said what it is along some axis: it is 1 there */
 	enum gz_voxel_type type;
 	void *voxels; /**< dims[0] * dims[1] * dims[2] voxels and GZ_VOLUME_PADDING bytes; NULL
 			 if the volume has bricks */
@@ -193,7 +194,7 @@ struct gz_raw_layout {
 	int dims[3];
 	enum gz_raw_type type;
 	bool big_endian;
-	double spacing[3];
+	double spacing[3]; /**< 0 along an axis: not known, and 1 is assumed */
 	int channels; /**< numbers of a voxel: 0 or 1 its value, 3 red, green and blue, 4 and alpha
 		       */
 };

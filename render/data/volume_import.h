@@ -29,6 +29,7 @@ struct gz_volume_file {
 struct gz_import_layout {
 	int dims[3];
 	double spacing[3];
+	bool spacing_assumed;   /**< see struct gz_volume */
 	double direction[3][3]; /**< [axis][x, y, z]: where each axis points in RAS+; any length */
 	bool oriented;          /**< direction is anatomical */
 	bool labels;            /**< numbers name things; see struct gz_volume */

@@ -62,7 +62,8 @@ struct gz_decode_header {
 	double number_range[2]; /**< of a series: its range as in struct gz_volume; known at the end
 				 */
 	int32_t time_points;    /**< 0 or 1: no series; known at the end */
-	uint32_t labels;        /**< 1: values are numbers of things; else 0 */
+	uint16_t labels;        /**< 1: values are numbers of things; else 0 */
+	uint16_t spacing_assumed; /**< 1: the file does not state the spacing; else 0 */
 };
 
 /** Size of a line with its NUL, bytes. */

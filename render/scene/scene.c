@@ -70,11 +70,13 @@ static enum gz_result make_procedural(const struct scene_loader *loader,
 	const int *dims = settings->dims[0] > 0 ? settings->dims : preset;
 	const enum gz_procedural which = (enum gz_procedural)(settings->volume_procedural - 1);
 	enum gz_voxel_type type;
+	double spacing[3];
 	if (!gz_scene_made_type(settings, &type))
 		return GZ_ERR_INVAL; /* cannot happen: refused when the settings were read */
-	return gz_volume_generate(
-		&(struct gz_procedural_request) { which, dims, settings->spacing, type },
-		loader->loading, loader->log, out_volume);
+	for (int axis = 0; axis < 3; axis++)
+		spacing[axis] = settings->spacing[axis] > 0 ? settings->spacing[axis] : 1;
+	return gz_volume_generate(&(struct gz_procedural_request) { which, dims, spacing, type },
+				  loader->loading, loader->log, out_volume);
 }
 
 static enum gz_result load_volume_file(const struct scene_loader *loader,
@@ -101,8 +103,12 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 	    (settings->dims[0] == 0 && gz_particle_format_of(path)))
 		return gz_particle_volume_load(path, &settings->particles, &loading, loader->log,
 					       out_volume);
-	return gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL, &loading, loader->log,
-			      out_volume);
+	const enum gz_result loaded = gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL,
+						     &loading, loader->log, out_volume);
+	if (loaded == GZ_OK && out_volume->spacing_assumed)
+		gz_info(loader->log, "%s: the spacing of its voxels is not stated; 1 mm is assumed",
+			path);
+	return loaded;
 }
 
 void gz_scene_free_labels(const struct gz_scene *scene, struct gz_label_surfaces *labels)

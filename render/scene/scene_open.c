@@ -241,20 +241,15 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 /* Whether the name tells a layout of another size than the file has; logged. */
 static bool has_other_size_than_named(const char *path, uint64_t bytes, const struct gz_log *log)
 {
-	struct gz_raw_guess named = { 0 };
-	if (bytes == 0 || gz_raw_guess(path, 0, &named, 1) == 0)
-		return false;
-	const struct gz_raw_layout *layout = &named.layout;
-	const uint64_t wanted = gz_raw_layout_bytes(layout);
-	if (wanted == bytes)
+	struct gz_raw_layout layout;
+	if (!gz_raw_name_contradicts(path, bytes, &layout))
 		return false;
 	gz_err(log,
 	       "%s: the file name says %d x %d x %d %s, which is %llu bytes, but the file has "
 	       "%llu; copy it again, or give its layout, as in --volume.dims "
 	       "\"256 256 128\" --volume.type uint8",
-	       path, layout->dims[0], layout->dims[1], layout->dims[2],
-	       gz_raw_type_names[layout->type], (unsigned long long)wanted,
-	       (unsigned long long)bytes);
+	       path, layout.dims[0], layout.dims[1], layout.dims[2], gz_raw_type_names[layout.type],
+	       (unsigned long long)gz_raw_layout_bytes(&layout), (unsigned long long)bytes);
 	return true;
 }
 

@@ -44,7 +44,7 @@ struct gz_scene_settings {
 	int dims[3];       /**< raw files and procedural volumes; 0 = not given */
 	int type;          /**< enum gz_raw_type; raw files and procedural volumes */
 	int endian;        /**< raw files: 0 little, 1 big */
-	double spacing[3]; /**< mm; raw files and procedural volumes */
+	double spacing[3]; /**< mm; raw files and procedural volumes; 0: not known */
 	int channels;      /**< numbers of a voxel; raw files */
 	int opacity;       /**< enum gz_opacity_source */
 	int resample;      /**< enum gz_resampling; DICOM */

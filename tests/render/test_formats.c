@@ -374,6 +374,75 @@ static void start_that_is_cut_is_no_harm(void **state)
 	}
 }
 
+/* What a file does not state, the volume says, and so do files that are written of it. */
+static void spacing_that_is_not_stated_is_assumed(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *name, *head;
+		bool assumed;
+	} rows[] = {
+		{ "plain.nrrd",
+		  "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+		  "encoding: raw\n\n",
+		  true },
+		{ "spaced.nrrd",
+		  "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\n"
+		  "spacings: 1 1 1\nencoding: raw\n\n",
+		  false },
+		{ "plain.mha",
+		  "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\n"
+		  "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n",
+		  true },
+		{ "spaced.mha",
+		  "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\n"
+		  "ElementSpacing = 1 1 1\nElementType = MET_UCHAR\n"
+		  "ElementDataFile = LOCAL\n",
+		  false },
+		{ "sized.mha",
+		  "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\n"
+		  "ElementSize = 2 2 2\nElementType = MET_UCHAR\n"
+		  "ElementDataFile = LOCAL\n",
+		  false },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		struct gz_volume volume, again;
+		const char *path =
+			files_write_text(rows[i].name, rows[i].head, eight, sizeof eight);
+		assert_int_equal(gz_volume_load(path, NULL, NULL, NULL, &volume), GZ_OK);
+		assert_int_equal(volume.spacing_assumed, rows[i].assumed);
+		const char *written = files_path("written.gzb");
+		assert_int_equal(gz_bricks_write(&volume, written, NULL, NULL), GZ_OK);
+		assert_int_equal(gz_volume_load(written, NULL, NULL, NULL, &again), GZ_OK);
+		assert_int_equal(again.spacing_assumed, rows[i].assumed);
+		gz_volume_free(&again);
+		if (!volume.oriented) {
+			written = files_path("written.nrrd");
+			assert_int_equal(gz_nrrd_write(&volume, written, NULL, NULL), GZ_OK);
+			assert_int_equal(gz_volume_load(written, NULL, NULL, NULL, &again), GZ_OK);
+			assert_int_equal(again.spacing_assumed, rows[i].assumed);
+			gz_volume_free(&again);
+		}
+		gz_volume_free(&volume);
+	}
+}
+
+/* Raw files state what their reader is told. */
+static void spacing_of_raw_files_is_known_or_not(void **state)
+{
+	(void)state;
+	const char *path = files_write("some.raw", eight, sizeof eight);
+	struct gz_raw_layout raw = { .dims = { 2, 2, 2 }, .spacing = { 2, 2, 0 } };
+	struct gz_volume volume;
+	assert_int_equal(gz_volume_load(path, &raw, NULL, NULL, &volume), GZ_OK);
+	assert_true(volume.spacing_assumed && volume.spacing[0] == 2 && volume.spacing[2] == 1);
+	gz_volume_free(&volume);
+	raw.spacing[2] = 3;
+	assert_int_equal(gz_volume_load(path, &raw, NULL, NULL, &volume), GZ_OK);
+	assert_true(!volume.spacing_assumed && volume.spacing[2] == 3);
+	gz_volume_free(&volume);
+}
+
 TEST_SUITE(formats)
 {
 	const struct CMUnitTest tests[] = {
@@ -390,6 +459,8 @@ TEST_SUITE(formats)
 		cmocka_unit_test(dicom_with_a_preamble_of_tiff_is_dicom),
 		cmocka_unit_test(content_of_no_format_is_refused),
 		cmocka_unit_test(start_that_is_cut_is_no_harm),
+		cmocka_unit_test(spacing_that_is_not_stated_is_assumed),
+		cmocka_unit_test(spacing_of_raw_files_is_known_or_not),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

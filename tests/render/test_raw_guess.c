@@ -13,7 +13,7 @@ struct named {
 	int dims[3];
 	enum gz_raw_type type;
 	bool big;
-	double spacing[3]; /* 0: 1 */
+	double spacing[3]; /* 0: not known */
 };
 
 #define CUBE(n)         \
@@ -214,8 +214,7 @@ static void name_and_size_tell_the_layout(void **state)
 		bool right = memcmp(best->dims, row->dims, sizeof best->dims) == 0 &&
 			     best->type == row->type && best->big_endian == row->big;
 		for (int axis = 0; axis < 3; axis++)
-			right = right && best->spacing[axis] ==
-						 (row->spacing[axis] ? row->spacing[axis] : 1);
+			right = right && best->spacing[axis] == row->spacing[axis];
 		if (!right)
 			fail_msg("%s: %d %d %d %s %s spacing %g %g %g (%s)", row->name,
 				 best->dims[0], best->dims[1], best->dims[2],
@@ -320,6 +319,18 @@ static void bytes_of_a_file_are_those_that_come_out_of_it(void **state)
 	assert_int_equal(gz_raw_file_bytes(files_folder()), 0);
 }
 
+/* A name that claims 2048 voxels along each edge, and a file of a kilobyte. */
+static void name_and_size_that_disagree_are_told(void **state)
+{
+	(void)state;
+	struct gz_raw_layout layout = { 0 };
+	assert_true(gz_raw_name_contradicts("big_2048x2048x2048_uint8.raw", 1000, &layout));
+	assert_int_equal(layout.dims[2], 2048);
+	assert_false(gz_raw_name_contradicts("big_10x10x10_uint8.raw", 1000, &layout));
+	assert_false(gz_raw_name_contradicts("big_2048x2048x2048_uint8.raw", 0, &layout));
+	assert_false(gz_raw_name_contradicts("mystery.raw", 1000, &layout));
+}
+
 TEST_SUITE(raw_guess)
 {
 	const struct CMUnitTest tests[] = {
@@ -329,6 +340,7 @@ TEST_SUITE(raw_guess)
 		cmocka_unit_test(what_no_layout_fits_is_left_to_the_user),
 		cmocka_unit_test(of_unknown_size_only_a_name_that_says_all_is_understood),
 		cmocka_unit_test(certain_is_only_what_the_name_says_in_full),
+		cmocka_unit_test(name_and_size_that_disagree_are_told),
 		cmocka_unit_test(bytes_of_a_file_are_those_that_come_out_of_it),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

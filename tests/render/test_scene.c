@@ -114,7 +114,6 @@ static const struct refusal refusals[] = {
 	{ SCENE "[render]\nray_sampling_rate = 1\nray_sampling_rate = 1\n", "s.scene:8: " },
 	{ "[volume]\ndims = 0 1 1\n", "s.scene:2: volume.dims: 0 is outside 1 to 16384" },
 	{ "[volume]\ndims = 1 1 99999\n", "s.scene:2: volume.dims: 99999 is outside" },
-	{ "[volume]\nspacing = 1 1 0\n", "s.scene:2: volume.spacing: 0 is outside" },
 	{ "[volume]\nspacing = 1 1 -1\n", "s.scene:2: volume.spacing: -1 is outside" },
 	{ "[volume]\ntype = int64\n", "s.scene:2: volume.type: int64 is not uint8" },
 	{ "nonsense\n", "s.scene:1: " },

@@ -71,7 +71,7 @@ static void kind_must_be_known_and_fit_the_layout(void **state)
 static void raw_of_impossible_layout_is_refused(void **state)
 {
 	(void)state;
-	static const double spacings[] = { 0, -1, NAN };
+	static const double spacings[] = { -1, -INFINITY, NAN };
 	const char *path = files_write("b.raw", zeros, sizeof zeros);
 	struct gz_raw_layout raw = layout_of(0, 2, 2, GZ_RAW_UINT8);
 	check_refused(path, &raw, GZ_ERR_FORMAT, "0 voxels along axis 1; allowed: 1 to 16384");

@@ -82,6 +82,10 @@ class Files(WindowCase):
             for r, g, b in [picture.at(x, y)]
         )
 
+    def amber_letters(self, picture):
+        pixels = (picture.at(x, y) for x in range(10, SIZE[0] - 10) for y in range(20, SIZE[1] - 20))
+        return 100 < sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
+
     def bright_in_the_middle(self, picture):
         width, height = SIZE
         middle = picture.at(width // 2, height // 2)
@@ -245,6 +249,11 @@ class Files(WindowCase):
         self.press("Return")
         self.until(self.bright_in_the_middle, "the ball in the middle")
 
+    def test_raw_volume_that_is_cut_short_is_said_to_be(self):
+        path = self.write("cut_2048x2048x2048_uint8.raw", bytes(1000))
+        self.launch(path, "--gaze", "mouse", "--method", "standard")
+        self.until(lambda p: self.dialog_there(p) and self.amber_letters(p), "a warning in the dialog")
+
     def test_another_guess_is_chosen_by_arrows_and_short_presses(self):
         path = self.write("mystery.raw", BALL)
         self.launch(path, "--gaze", "mouse", "--method", "standard")
@@ -256,7 +265,7 @@ class Files(WindowCase):
         self.until(lambda p: not self.dialog_there(p), "a picture")
 
     def test_raw_volume_with_its_layout_in_the_name_needs_no_question(self):
-        path = self.write("ball_%dx%dx%d_uint8.raw" % (EDGE, EDGE, EDGE), BALL)
+        path = self.write("ball_%dx%dx%d_1.0x1.0x1.0_uint8.raw" % (EDGE, EDGE, EDGE), BALL)
         self.launch(path, "--gaze", "mouse", "--method", "standard")
         self.until(self.bright_in_the_middle, "the ball in the middle")
         shown = self.below_line(self.rest())

@@ -125,7 +125,7 @@ const struct gz_option gz_view_option_table[] = {
 	{ "volume.endian", GZ_OPTION_CHOICE, AT(volume_endian), .choices = endian_names,
 	  .help = "byte order of the raw file's voxels; default: little" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(volume_spacing), 1e-9, 1e9, .count = 3,
-	  .help = "voxel spacing along x, y, z, mm; default: 1" },
+	  .help = "voxel spacing along x, y, z, mm; default: not known, 1 is assumed" },
 	{ "volume.channels", GZ_OPTION_INT, AT(volume_channels), 1, 4,
 	  .help = "numbers of a voxel of the raw file: 1, or 3 or 4 for a colour; default: 1" },
 	{ "volume.opacity", GZ_OPTION_CHOICE, AT(volume_opacity),
@@ -698,9 +698,7 @@ bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_la
 	if (options->volume_dims[0] < 1 || options->volume_type < 0)
 		return false;
 	memcpy(raw.dims, options->volume_dims, sizeof raw.dims);
-	for (int axis = 0; axis < 3; axis++)
-		raw.spacing[axis] =
-			options->volume_spacing[axis] > 0 ? options->volume_spacing[axis] : 1;
+	memcpy(raw.spacing, options->volume_spacing, sizeof raw.spacing);
 	*out_raw = raw;
 	return true;
 }

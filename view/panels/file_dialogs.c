@@ -271,12 +271,20 @@ void gz_raw_panel_show(struct gz_raw_panel *panel, const char *path)
 	*panel = (struct gz_raw_panel) {
 		.open = true,
 		.bytes = gz_raw_file_bytes(path),
-		.layout = { .dims = { 1, 1, 1 }, .spacing = { 1, 1, 1 } },
+		.layout = { .dims = { 1, 1, 1 } },
 	};
 	snprintf(panel->path, sizeof panel->path, "%s", path);
 	panel->count = gz_raw_guess(path, panel->bytes, panel->guesses, GZ_RAW_GUESSES_MAX);
 	if (panel->count > 0)
 		panel->layout = panel->guesses[0].layout;
+	struct gz_raw_layout named;
+	if (gz_raw_name_contradicts(path, panel->bytes, &named))
+		snprintf(panel->warning, sizeof panel->warning,
+			 "The name says %d x %d x %d %s, which is %llu bytes. The file has %llu: "
+			 "it may be incomplete.",
+			 named.dims[0], named.dims[1], named.dims[2], gz_raw_type_names[named.type],
+			 (unsigned long long)gz_raw_layout_bytes(&named),
+			 (unsigned long long)panel->bytes);
 }
 
 static bool is_same_layout(const struct gz_raw_layout *a, const struct gz_raw_layout *b)
@@ -289,6 +297,8 @@ static bool draw_layout_guesses(struct gz_raw_panel *panel)
 {
 	const char *reason = "None of these.";
 	bool opened = false;
+	if (panel->warning[0])
+		gz_widget_text(gz_paint_amber, panel->warning);
 	if (panel->count == 0) {
 		gz_widget_text(gz_paint_amber, "The layout cannot be guessed from name and size: "
 					       "fill in the fields.");
@@ -334,7 +344,7 @@ static void draw_layout_fields(struct gz_raw_panel *panel)
 		.least = 1, .greatest = GZ_VOLUME_DIM_MAX, .speed = 0.25, .format = "%d"
 	};
 	const struct gz_number_range spacing = {
-		.least = 1e-9, .greatest = 1e9, .speed = 0.005, .format = "%.6g"
+		.least = 0, .greatest = 1e9, .speed = 0.005, .format = "%.6g"
 	};
 	int type = (int)panel->layout.type, order = panel->layout.big_endian;
 	int content = panel->layout.channels > 1 ? panel->layout.channels - 2 : 0;
@@ -347,7 +357,7 @@ static void draw_layout_fields(struct gz_raw_panel *panel)
 	gz_widget_choice("##type", &type, gz_raw_type_names);
 	draw_layout_label("byte order", "of numbers of more than one byte");
 	gz_widget_choice("##order", &order, orders);
-	draw_layout_label("spacing x y z", "between voxels, mm");
+	draw_layout_label("spacing x y z", "between voxels, mm; 0: not known");
 	gz_widget_doubles("##spacing", panel->layout.spacing, 3, &spacing);
 	panel->layout.type = (enum gz_raw_type)type;
 	panel->layout.channels = content > 0 ? content + 2 : 1;

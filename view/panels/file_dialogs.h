@@ -53,6 +53,7 @@ struct gz_raw_panel {
 	struct gz_raw_guess guesses[GZ_RAW_GUESSES_MAX];
 	size_t count;
 	struct gz_raw_layout layout; /**< as in the fields */
+	char warning[192];           /**< the name contradicts the size; empty: it does not */
 };
 
 /** Open the dialog for a file, with the best guess in the fields. */

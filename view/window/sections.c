@@ -72,6 +72,12 @@ static const struct gz_volume *volume_of(const struct gz_window *window)
 	return &gz_frame_maker_scene(window->maker)->volume;
 }
 
+/* Behind lengths that nobody vouches for. */
+static const char *assumed_text(const struct gz_volume *volume)
+{
+	return volume->spacing_assumed ? " (spacing assumed)" : "";
+}
+
 static bool can_have_sections(const struct gz_window *window)
 {
 	return window->maker && !window->alone &&
@@ -494,7 +500,8 @@ static void draw_distances(const struct gz_window *window, enum gz_section_plane
 		gz_draw_line(GZ_LAYER_PICTURE, from, to, line_paint, 1.5F);
 		gz_draw_disc(GZ_LAYER_PICTURE, from, 2.5F, line_paint);
 		gz_draw_disc(GZ_LAYER_PICTURE, to, 2.5F, line_paint);
-		snprintf(text, sizeof text, "%.1f mm", gz_distance_length(volume, line));
+		snprintf(text, sizeof text, "%.1f mm%s", gz_distance_length(volume, line),
+			 assumed_text(volume));
 		const struct gz_place end = from.x > to.x ? from : to;
 		const float gap = 6 * gz_widgets_scale();
 		gz_draw_caption(GZ_LAYER_PICTURE, (struct gz_place) { end.x + gap, end.y - gap },
@@ -553,9 +560,10 @@ static void draw_readout(const struct gz_window *window)
 	for (int i = 0; i < 3; i++)
 		mm[i] = (place[i] * volume->dims[i] - 0.5) * volume->spacing[i];
 	snprintf(text, sizeof text,
-		 "value %.6g   voxel %d %d %d\n%.1f %.1f %.1f mm   level %.4g width %.4g%s",
+		 "value %.6g   voxel %d %d %d\n%.1f %.1f %.1f mm%s   level %.4g width %.4g%s",
 		 gz_section_value(volume, place), voxel[0], voxel[1], voxel[2], mm[0], mm[1], mm[2],
-		 level, width, window->sections->measuring ? "   measuring" : "");
+		 assumed_text(volume), level, width,
+		 window->sections->measuring ? "   measuring" : "");
 	const struct gz_place size = gz_text_room(1, text);
 	gz_draw_text(GZ_LAYER_PICTURE,
 		     (struct gz_place) { room.x - size.x - 6 * unit, room.y - size.y - 4 * unit },

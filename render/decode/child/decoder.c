@@ -50,6 +50,7 @@ static struct gz_decode_header header_of(const struct gz_volume *volume)
 	struct gz_decode_header header = { .type = (uint32_t)volume->type,
 					   .oriented = volume->oriented,
 					   .labels = volume->labels,
+					   .spacing_assumed = volume->spacing_assumed,
 					   .colour = (uint32_t)volume->colour,
 					   .time_points = volume->time_points,
 					   .slope = volume->slope,

@@ -101,6 +101,7 @@ void take_measures(const gdcm::DataSet &measures, format &f)
 	if (numbers_of(measures, pixel_spacing, rows_columns, 2)) {
 		f.spacing[0] = rows_columns[1];
 		f.spacing[1] = rows_columns[0];
+		f.spaced = true;
 	}
 	if (numbers_of(measures, spacing_between_slices, &thickness, 1) ||
 	    numbers_of(measures, slice_thickness, &thickness, 1))

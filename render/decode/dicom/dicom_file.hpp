@@ -45,6 +45,7 @@ struct format {
 	int samples = 1; /* numbers of a pixel */
 	colour_kind colours = colour_kind::none;
 	double spacing[2] = { 1, 1 }; /* between columns, between rows */
+	bool spaced = false;          /* spacing is told */
 	double thickness = 0;         /* or spacing between slices, if told */
 	double between = 0;           /* spacing between slices, if told */
 

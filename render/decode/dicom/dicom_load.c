@@ -18,6 +18,7 @@ static enum gz_result import_dicom_slices(struct gz_dicom_series *series,
 	const struct gz_dicom_geometry *geometry = gz_dicom_series_geometry(series);
 	const struct gz_slice_source source = { read_dicom_slice, series, geometry->bytes_bound };
 	struct gz_import_layout layout = {
+		.spacing_assumed = geometry->spacing_assumed,
 		.oriented = geometry->oriented,
 		.labels = geometry->labels,
 		.type = geometry->type,

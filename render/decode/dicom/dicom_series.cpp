@@ -309,6 +309,7 @@ void reader::finish()
 	std::copy_n(even ? even.grid.dims : dims, 3, geometry.dims);
 	geometry.spacing[0] = numbers.spacing[0];
 	geometry.spacing[1] = numbers.spacing[1];
+	geometry.spacing_assumed = !numbers.spaced;
 	geometry.time_points = (int)time_points;
 	const bool coloured = numbers.colours != colour_kind::none;
 	geometry.channels = coloured ? 3 : 1;

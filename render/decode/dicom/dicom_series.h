@@ -27,6 +27,7 @@ struct gz_dicom_series;
 struct gz_dicom_geometry {
 	int dims[3];            /**< columns, rows, slices */
 	double spacing[3];      /**< mm between columns, rows, slices */
+	bool spacing_assumed;   /**< the files do not tell the first two, which are 1 */
 	double direction[3][3]; /**< [axis][x, y, z] in RAS+ */
 	bool oriented;          /**< the files told where they lie */
 	bool labels;            /**< they are a segmentation */
