@@ -4,7 +4,7 @@
 #include "view/panels/file_dialogs.h"
 #include "view/panels/keys_panel.h"
 
-static const struct gz_keys_row row = { "files", "Ctrl+O", "open a scene or a volume",
+static const struct gz_keys_row row = { "files", "Ctrl+O", "open a scene or a volume", "Open...",
 					"load import" };
 
 static void row_is_found_by_words_of_help_keys_group_and_others(void **state)
@@ -29,11 +29,13 @@ static void row_without_one_of_the_words_is_not_found(void **state)
 static void whole_words_fit_better_than_parts_and_keys_better_than_settings(void **state)
 {
 	(void)state;
-	const struct gz_keys_row setting = { "Volume", NULL, "file: what is open", NULL };
+	const struct gz_keys_row setting = { "Volume", NULL, "file: what is open", NULL, NULL };
+	const struct gz_keys_row named = { "Files", NULL, "go back", "Remove the clip box", NULL };
 	assert_true(gz_keys_row_fits(&row, "open") > gz_keys_row_fits(&row, "ope"));
 	assert_true(gz_keys_row_fits(&row, "ope") > gz_keys_row_fits(&row, "pen"));
 	assert_true(gz_keys_row_fits(&row, "open") > gz_keys_row_fits(&setting, "open"));
 	assert_true(gz_keys_row_fits(&setting, "file") > 0);
+	assert_true(gz_keys_row_fits(&named, "remove clip") > 0);
 }
 
 static void progress_text_has_the_time_left_once_it_can_be_told(void **state)

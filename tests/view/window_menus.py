@@ -4,6 +4,7 @@ window_menus.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
 import glob
+import math
 import os
 import sys
 import unittest
@@ -240,6 +241,48 @@ class Menus(WindowCase):
         self.press("shift+s")
         self.until(lambda p: not any(self.crosses(p)) and self.shows_something(p),
                    "the picture alone")
+
+    def place_of(self, world):
+        """Where a point of the world is in the window, by the scene's own camera."""
+        with open(SCENE, encoding="utf-8") as text:
+            keys = dict(line.split(" = ", 1) for line in text.read().splitlines() if " = " in line)
+        eye, middle, up = ([float(n) for n in keys[key].split()] for key in ("eye", "look_at", "up"))
+
+        def cross(a, b):
+            return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+        def unit(a):
+            return [n / math.hypot(*a) for n in a]
+
+        ahead = unit([m - e for m, e in zip(middle, eye)])
+        right = unit(cross(ahead, up))
+        axes = (right, cross(right, ahead), ahead)
+        x, y, depth = (sum(a * (w - e) for a, w, e in zip(axis, world, eye)) for axis in axes)
+        scale = SIZE[1] / 2 / math.tan(math.radians(float(keys["fov_deg"])) / 2) / depth
+        return SIZE[0] / 2 + x * scale, SIZE[1] / 2 - y * scale
+
+    def test_clip_box_is_dragged_by_a_handle_undone_and_removed(self):
+        self.start_own_scene()
+        at, end = ([round(n) for n in self.place_of((x, 0, 0))] for x in (0.5, 0.1))
+        self.move(*end)  # the gaze, as after the drag
+        whole = self.rest()
+        self.find("crop")
+        self.press("Return")
+        self.until(lambda p: any(p.at(at[0] + a, at[1] + b) == (255, 214, 64)
+                                 for a in range(-8, 9) for b in range(-8, 9)), "a handle")
+        self.drag(at, end)
+        keys = dict(line.split(" = ", 1) for line in self.saved() if " = " in line)
+        greatest = [float(share) for share in keys["greatest"].split()]
+        self.assertEqual(greatest[1:], [1, 1])
+        self.assertAlmostEqual(greatest[0], 0.6, delta=0.04)
+        self.press("ctrl+z")
+        self.assertIn("greatest = 1 1 1", self.saved())
+        self.press("ctrl+shift+z")
+        self.find("remove the clip box")
+        self.press("Return")
+        self.press("shift+c")  # the handles go
+        part = (0, 60, SIZE[0], SIZE[1] - 64)  # between the captions
+        self.until(lambda p: p.part(*part) == whole.part(*part), "the whole volume")
 
     def test_start_window_opens_a_recent_scene_by_its_picture(self):
         self.start_own_scene()

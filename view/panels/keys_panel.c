@@ -45,7 +45,7 @@ static int points_of_word(const char *text, const char *word, size_t length)
 
 static int points_of_row(const struct gz_keys_row *row, const char *word, size_t length)
 {
-	const char *const texts[] = { row->help, row->keys, row->group, row->words };
+	const char *const texts[] = { row->help, row->keys, row->group, row->name, row->words };
 	int most = 0;
 	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
 		const int points = points_of_word(texts[i], word, length);

@@ -16,6 +16,7 @@ struct gz_keys_row {
 	const char *group; /**< rows of a group follow each other */
 	const char *keys;  /**< "Ctrl+O"; NULL: only the search shows the row */
 	const char *help;
+	const char *name;  /**< in menus, by which it is found as well; NULL: none */
 	const char *words; /**< other words that find it, separated by blanks; NULL: none */
 };
 

@@ -67,6 +67,7 @@ static void list_part_keys(struct gz_window_keys *state, const struct gz_window_
 			.group = group,
 			.keys = action->keys,
 			.help = action->help,
+			.name = action->name,
 			.words = action->words,
 		};
 	}
