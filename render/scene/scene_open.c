@@ -13,6 +13,7 @@
 #include "render/particles/particles.h"
 #include "render/scene/scene_picture.h"
 #include "render/transfer/content.h"
+#include "render/transfer/transfer_presets.h"
 
 #define GZ_LOG_MODULE "scene"
 
@@ -211,6 +212,22 @@ static enum gz_result change_and_check(const struct gz_scene_request *request,
 	return result == GZ_OK ? gz_scene_settings_check(settings, request->path, log) : result;
 }
 
+/* Most volumes show surfaces, and those need light; a transfer function that is asked for may not.
+ * A change of the shading comes afterwards. */
+static enum gz_result choose_first_shading(const struct gz_scene_request *request,
+					   struct gz_scene_settings *settings)
+{
+	struct gz_scene_settings asked = *settings;
+	const enum gz_result result =
+		request->change ? request->change(request->user, &asked) : GZ_OK;
+	const int preset = asked.transfer_preset;
+	const bool lit =
+		preset == 0 || gz_transfer_preset_text((enum gz_transfer_preset)(preset - 1))->lit;
+	if (result == GZ_OK && lit)
+		settings->rays.shading = GZ_SHADING_GRADIENT;
+	return result;
+}
+
 static enum gz_result open_volume(const struct gz_scene_request *request,
 				  const struct gz_raw_layout *raw, const struct gz_log *log,
 				  struct gz_scene *out_scene)
@@ -223,9 +240,9 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	if (result != GZ_OK)
 		return result;
 	const struct gz_camera preset = settings.camera;
-	/* Most volumes show surfaces, and those need light. */
-	settings.rays.shading = GZ_SHADING_GRADIENT;
-	result = change_and_check(request, &settings, log);
+	result = choose_first_shading(request, &settings);
+	if (result == GZ_OK)
+		result = change_and_check(request, &settings, log);
 	const struct gz_scene_parts parts = {
 		.name = request->path,
 		.settings = &settings,

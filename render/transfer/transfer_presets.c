@@ -352,9 +352,42 @@ bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_hist
 	return !presets[which].for_hounsfield || gz_histogram_is_hounsfield(histogram);
 }
 
+/* The most frequent values, as a share of the range without the outermost thousandths, and the
+ * share of the voxels around it. Around it is a sixteenth of that range (chosen: the noise of a
+ * scan). */
+static double find_ground(const struct gz_histogram *histogram, double *out_share)
+{
+	const double low = gz_histogram_percentile(histogram, 0.001);
+	const double high = gz_histogram_percentile(histogram, 0.999);
+	const double width = (high - low) / 16;
+	double best = 0, at = 0;
+	*out_share = 0;
+	if (histogram->total == 0 || !(width > 0))
+		return 0;
+	for (int step = 0; step <= 60; step++) {
+		const double from = low + step * width / 4;
+		const double share = density_between(histogram, from, from + width) * width;
+		if (share > best) {
+			best = share;
+			at = (step + 2) / 64.0;
+		}
+	}
+	*out_share = best;
+	return at;
+}
+
 enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram)
 {
-	return gz_histogram_is_hounsfield(histogram) ? GZ_PRESET_CT_TISSUE : GZ_PRESET_TISSUE;
+	/* Chosen: a ground fills a quarter of a scan's box and more, and is darker than all else,
+	 * or brighter. What oscillates around a value in the middle is a field. */
+	static const double ground_share = 0.25, field_share = 0.1;
+	double share;
+	if (gz_histogram_is_hounsfield(histogram))
+		return GZ_PRESET_CT_TISSUE;
+	const double at = find_ground(histogram, &share);
+	if (at > 0.9 && share > ground_share)
+		return GZ_PRESET_INVERSE;
+	return at > 0.3 && at < 0.7 && share > field_share ? GZ_PRESET_FIELD : GZ_PRESET_TISSUE;
 }
 
 void gz_transfer_preset_make(enum gz_transfer_preset which, const struct gz_histogram *histogram,

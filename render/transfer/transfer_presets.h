@@ -52,7 +52,9 @@ bool gz_histogram_is_hounsfield(const struct gz_histogram *histogram);
 bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram);
 
 /** The preset for a volume without a transfer function: bone in soft tissue if values are
- * Hounsfield units, else GZ_PRESET_TISSUE, which shows something of every volume. */
+ * Hounsfield units; GZ_PRESET_INVERSE in front of a bright ground, and GZ_PRESET_FIELD if the most
+ * frequent value lies in the middle of the others; else GZ_PRESET_TISSUE, which shows something of
+ * every volume. */
 enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram);
 
 /**

@@ -145,6 +145,24 @@ static enum gz_result take_transfer_of_others(void *user, struct gz_scene_settin
 	return GZ_OK;
 }
 
+static enum gz_result ask_for_xray(void *user, struct gz_scene_settings *settings)
+{
+	(void)user;
+	settings->transfer_preset = GZ_PRESET_XRAY + 1;
+	return GZ_OK;
+}
+
+static void preset_that_shows_no_surfaces_is_not_lit(void **state)
+{
+	(void)state;
+	const struct gz_scene_request request = { .path = write_nrrd("v.nrrd"),
+						  .change = ask_for_xray };
+	struct gz_scene scene;
+	assert_int_equal(gz_scene_open(&request, NULL, &scene), GZ_OK);
+	assert_int_equal(scene.settings.rays.shading, GZ_SHADING_NONE);
+	gz_scene_free(&scene);
+}
+
 static void transfer_function_for_other_data_is_told(void **state)
 {
 	(void)state;
@@ -425,6 +443,7 @@ TEST_SUITE(scene_open)
 			volume_without_a_scene_is_lit_and_what_is_seen_of_it_fills_the_view),
 		cmocka_unit_test(transfer_function_for_other_data_is_told),
 		cmocka_unit_test(shading_and_preset_of_the_request_are_kept),
+		cmocka_unit_test(preset_that_shows_no_surfaces_is_not_lit),
 		cmocka_unit_test(mesh_opens_without_a_scene),
 		cmocka_unit_test(particles_open_as_a_volume),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),

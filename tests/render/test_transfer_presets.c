@@ -195,6 +195,33 @@ static double opacity_at(const struct gz_transfer *transfer, double value)
 	return rgba[3];
 }
 
+/* A tenth of the voxels are spread over all values, the others have one value and some noise. */
+static enum gz_transfer_preset preset_around(double value)
+{
+	struct gz_volume volume = { .dims = { 50, 50, 10 },
+				    .spacing = { 1, 1, 1 },
+				    .type = GZ_VOXEL_U8 };
+	struct gz_histogram histogram;
+	assert_int_equal(gz_volume_allocate(&volume), GZ_OK);
+	uint8_t *voxels = volume.voxels;
+	for (size_t i = 0; i < gz_volume_voxel_count(&volume); i++)
+		voxels[i] = i % 10 == 0 ? (uint8_t)(i / 10 % 256)
+					: (uint8_t)(value * 248 + (double)(i % 7));
+	gz_volume_find_range(&volume);
+	assert_int_equal(gz_histogram_count(&volume, 256, 1, NULL, NULL, &histogram), GZ_OK);
+	gz_volume_free(&volume);
+	return gz_transfer_preset_for(&histogram);
+}
+
+static void ground_decides_which_preset_a_volume_gets(void **state)
+{
+	(void)state;
+	assert_int_equal(preset_around(0), GZ_PRESET_TISSUE);
+	assert_int_equal(preset_around(0.2), GZ_PRESET_TISSUE);
+	assert_int_equal(preset_around(0.5), GZ_PRESET_FIELD);
+	assert_int_equal(preset_around(1), GZ_PRESET_INVERSE);
+}
+
 static void presets_for_ct_show_their_tissue(void **state)
 {
 	(void)state;
@@ -241,6 +268,7 @@ TEST_SUITE(transfer_presets)
 		cmocka_unit_test(large_volume_is_as_see_through_as_a_small_one),
 		cmocka_unit_test(far_tail_of_few_voxels_is_left_out_of_the_range),
 		cmocka_unit_test(hounsfield_units_are_known_by_air_and_water),
+		cmocka_unit_test(ground_decides_which_preset_a_volume_gets),
 		cmocka_unit_test(presets_for_ct_show_their_tissue),
 		cmocka_unit_test(each_has_a_name_a_title_and_a_line),
 	};
