@@ -220,6 +220,10 @@ static void relate(const struct gz_study *study, struct gz_group *group, double 
 	group->bound_ms = group->standard == GZ_SERIES_NONE
 				  ? NAN
 				  : group->series[group->standard].typical_ms * group->bound_share;
+	for (size_t i = 0; i < group->series_count; i++)
+		group->series[i].efficiency =
+			(study->machine.copy_ms[group->size] + group->bound_ms) /
+			group->series[i].typical_ms;
 }
 
 /* The rows of one variant among those of a group; they stay sorted. */

@@ -57,6 +57,9 @@ struct gz_series {
 	double rays, samples; /**< mean of a frame */
 	/** Rays over the acuity bound's rays at the same points; NaN without a bound. */
 	double bound_share;
+	/** How much of a frame's time nobody could save: a copy of the picture and the bound's rays
+	 *  at the cost of standard's rays, over typical_ms. NaN without one of them. */
+	double efficiency;
 	struct gz_error_summary errors[GZ_ERROR_REFERENCES][GZ_ERROR_MEASURES];
 	struct gz_distribution flicker, turning_error; /**< over points */
 	/** On the Pareto front: no other series is better in both time and mean error and none

@@ -84,6 +84,7 @@ static json_t *series_to_json(const struct gz_study *study, const struct gz_seri
 	json_object_set_new(object, "rays", number(series->rays));
 	json_object_set_new(object, "samples", number(series->samples));
 	json_object_set_new(object, "bound_share", number(series->bound_share));
+	json_object_set_new(object, "efficiency", number(series->efficiency));
 	for (int id = 0; id < GZ_STUDY_COLUMNS; id++)
 		if (gz_study_columns[id].join == GZ_JOIN_FRAMES)
 			json_object_set_new(object, gz_study_columns[id].name,

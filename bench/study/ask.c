@@ -508,6 +508,9 @@ enum gz_result gz_study_ask(const struct gz_study_request *request, struct gz_st
 		result = list_scenes(&asking);
 	if (result == GZ_OK)
 		result = make_bound_rays(study, log);
+	for (size_t i = 0; i < study->size_count && result == GZ_OK; i++)
+		study->machine.copy_ms[i] =
+			gz_study_copy_ms(study->sizes[i][0], study->sizes[i][1]);
 	if (result == GZ_OK)
 		*out_study = *study;
 	else

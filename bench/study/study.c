@@ -8,6 +8,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/portable.h"
 #include "bench/study/hash.h"
 #include "sim/random.h"
@@ -262,6 +263,34 @@ void gz_study_machine_describe(struct gz_study_machine *out_machine)
 		 "gcc ",
 #endif
 		 __VERSION__, GZ_BUILD_TYPE);
+}
+
+static int compare_ms(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+double gz_study_copy_ms(int width, int height)
+{
+	enum { COPIES = 9 }; /* chosen: a median that one interruption does not move */
+	struct gz_image from = { 0 }, to = { 0 };
+	double ms[COPIES];
+	bool made = gz_image_resize(&from, width, height) == GZ_OK &&
+		    gz_image_resize(&to, width, height) == GZ_OK;
+	const size_t bytes = (size_t)width * (size_t)height * 4;
+	for (int i = 0; i < COPIES && made; i++) {
+		const int64_t begin_ns = gz_clock_now_ns();
+		memcpy(to.pixels, from.pixels, bytes);
+		ms[i] = (double)(gz_clock_now_ns() - begin_ns) / GZ_NS_PER_MS;
+		from.pixels[i] = to.pixels[bytes - 1 - (size_t)i]; /* no copy is left out */
+	}
+	gz_image_free(&from);
+	gz_image_free(&to);
+	if (!made)
+		return NAN;
+	qsort(ms, COPIES, sizeof ms[0], compare_ms);
+	return ms[COPIES / 2];
 }
 
 /* SHA-256 of a file; false where it cannot be read. */

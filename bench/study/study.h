@@ -78,6 +78,9 @@ struct gz_study_machine {
 	char program[GZ_STUDY_TEXT_SIZE];  /**< "gazebench 0.1.0" */
 	/** Description of each backend by gz_picture_maker_describe(), GPU and driver included. */
 	char backends[GZ_STUDY_LIST_MAX][GZ_STUDY_TEXT_SIZE];
+	/** What copying a picture of each of the study's sizes takes, by gz_study_copy_ms(): no
+	 *  frame takes less. NaN in studies of versions that did not measure it. */
+	double copy_ms[GZ_STUDY_LIST_MAX];
 };
 
 /** How far a picture is from its reference; NaN where it was not measured. Which pixels count: all,
@@ -208,6 +211,10 @@ void gz_study_free(struct gz_study *study);
 /** Describe this machine and build: host_cpu, memory, system and compiler. "unknown" stands for
  *  what cannot be told. */
 void gz_study_machine_describe(struct gz_study_machine *out_machine);
+
+/** Time that one thread takes to copy a picture of RGBA8, ms: the median of some. NaN without
+ *  memory for it. */
+double gz_study_copy_ms(int width, int height);
 
 /**
  * The commit of a program, so that two programs of one commit are told apart where somebody has

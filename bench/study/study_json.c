@@ -84,13 +84,17 @@ static json_t *bound_to_json(const struct gz_study *study)
 static json_t *machine_to_json(const struct gz_study *study)
 {
 	const struct gz_study_machine *machine = &study->machine;
-	json_t *backends = json_array();
+	json_t *backends = json_array(), *copies = json_array();
 	for (size_t i = 0; i < study->backend_count; i++)
 		json_array_append_new(backends, json_string(machine->backends[i]));
-	return json_pack("{ss ss ss ss ss ss so}", "program", machine->program, "commit",
+	for (size_t i = 0; i < study->size_count; i++)
+		json_array_append_new(copies, isnan(machine->copy_ms[i])
+						      ? json_null()
+						      : json_real(machine->copy_ms[i]));
+	return json_pack("{ss ss ss ss ss ss so so}", "program", machine->program, "commit",
 			 machine->commit, "compiler", machine->compiler, "host_cpu",
 			 machine->host_cpu, "memory", machine->memory, "system", machine->system,
-			 "backends", backends);
+			 "backends", backends, "copy_ms", copies);
 }
 
 json_t *gz_study_to_json(const struct gz_study *study)
@@ -434,6 +438,10 @@ static void read_machine(struct reader *reader, const json_t *json, struct gz_st
 		const json_t *item = json_array_get(backends, i);
 		snprintf(machine->backends[i], sizeof machine->backends[i], "%s",
 			 json_is_string(item) ? json_string_value(item) : "");
+	}
+	for (size_t i = 0; i < study->size_count; i++) {
+		const json_t *item = json_array_get(json_object_get(json, "copy_ms"), i);
+		machine->copy_ms[i] = json_is_number(item) ? json_number_value(item) : NAN;
 	}
 }
 

@@ -41,6 +41,7 @@ static void fill_lists(struct gz_study *study)
 	study->sizes[0][1] = 48;
 	study->size_count = 1;
 	study->backends = calloc(2, sizeof *study->backends);
+	study->machine.copy_ms[0] = 0.25;
 	strcpy(study->backends[0], "cpu");
 	strcpy(study->backends[1], "cpu:threads=2");
 	study->backend_count = 2;

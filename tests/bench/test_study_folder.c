@@ -121,6 +121,7 @@ static void same_study(const struct gz_study *a, const struct gz_study *b)
 	assert_string_equal(a->variants[2].method, b->variants[2].method);
 	assert_string_equal(a->machine.host_cpu, b->machine.host_cpu);
 	assert_string_equal(a->machine.backends[1], b->machine.backends[1]);
+	assert_true(a->machine.copy_ms[0] == b->machine.copy_ms[0]);
 	assert_memory_equal(a->points, b->points, a->point_count * sizeof *a->points);
 	assert_memory_equal(a->bound_rays, b->bound_rays, 8 * sizeof *a->bound_rays);
 	assert_int_equal(a->shard, b->shard);

@@ -69,6 +69,7 @@ static void ratios_of_disturbed_frames_come_from_medians(void **state)
 	struct gz_summary summary;
 	make_study(&made, &study);
 	make_rows(&study, disturbed);
+	study.machine.copy_ms[0] = 0.5;
 	assert_int_equal(gz_summary_make(&study, &summary), GZ_OK);
 	assert_int_equal(summary.group_count, 1);
 	const struct gz_group *group = &summary.groups[0];
@@ -86,6 +87,8 @@ static void ratios_of_disturbed_frames_come_from_medians(void **state)
 		    (100. + 144 + 490000 + 16 + 36 + 360000) / 1332, "perceived frame time");
 	assert_near(acuity->bound_share, 800 / (0.04 * 10000), "rays over the bound's");
 	assert_near(group->bound_ms, (102. + 52) / 2 * 0.04, "time of the bound's rays");
+	assert_near(acuity->efficiency, (0.5 + group->bound_ms) / acuity->typical_ms,
+		    "what nobody could save, over the time of a frame");
 	gz_summary_free(&summary);
 	gz_study_free(&study);
 }
