@@ -11,6 +11,7 @@
 #include "render/plan/plan.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/surface/cpu/embree.h"
+#include "render/surface/cpu/surface_normals.h"
 #include "render/surface/shared/surface_frame.h"
 #include "render/technique/shade.h"
 
@@ -21,10 +22,11 @@ _Static_assert(GZ_TILE_EDGE *GZ_TILE_EDGE == GZ_SURFACE_RAYS, "a tile is a packe
 
 /** One mesh as the kernels read it. All pointers are borrowed. */
 struct gz_surface_mesh {
-	const float *positions, *normals; /**< three numbers for each vertex; mm */
-	const uint32_t *triangles;        /**< three vertices each */
-	uint32_t id;                      /**< of its object */
-	float colour[3];                  /**< of its object, or the settings' */
+	const float *positions;                  /**< three numbers for each vertex; mm */
+	const uint32_t *triangles;               /**< three vertices each */
+	const struct gz_corner_normals *normals; /**< of each triangle */
+	uint32_t id;                             /**< of its object */
+	float colour[3];                         /**< of its object, or the settings' */
 };
 
 /** Halvings of the part of a ray in which it crosses a field's isovalue. Chosen: that part is at

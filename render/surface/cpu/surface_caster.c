@@ -49,7 +49,8 @@ struct gz_surface_caster {
 	struct gz_workers *workers;
 	const struct gz_surface_kernel *kernel;
 	struct gz_surface_meshes meshes;
-	struct gz_surface_mesh *listed; /* as kernels read them */
+	struct gz_surface_mesh *listed;    /* as kernels read them */
+	struct gz_corner_normals *normals; /* of the triangles of all meshes in turn */
 	struct gz_surface_tree tree;
 	bool tree_current;
 	double edge_mm; /* mean edge of the tree's triangles; INFINITY: it has none */
@@ -155,16 +156,28 @@ enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
 }
 
 /* List the meshes as kernels read them. */
-static void list_meshes(struct gz_surface_caster *caster)
+static enum gz_result list_meshes(struct gz_surface_caster *caster)
 {
 	const struct gz_surface_meshes *meshes = &caster->meshes;
-	for (size_t i = 0; i < meshes->count; i++)
+	free(caster->normals);
+	const enum gz_result result = gz_corner_normals_make(meshes->shown, meshes->count,
+							     caster->workers, &caster->normals);
+	if (result != GZ_OK) {
+		gz_err(caster->log, "no memory for the normals of the surface's triangles");
+		return result;
+	}
+	const struct gz_corner_normals *normals = caster->normals;
+	for (size_t i = 0; i < meshes->count; i++) {
 		caster->listed[i] = (struct gz_surface_mesh) {
 			.positions = (const float *)meshes->shown[i].positions,
-			.normals = (const float *)meshes->shown[i].normals,
 			.triangles = (const uint32_t *)meshes->shown[i].triangles,
+			.normals = normals,
 			.id = meshes->items[i].object.id,
 		};
+		if (normals)
+			normals += meshes->shown[i].triangle_count;
+	}
+	return GZ_OK;
 }
 
 static double length_of(const float vector[3])
@@ -288,8 +301,10 @@ static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
 	if (result != GZ_OK || caster->tree_current)
 		return result;
 	const int64_t made_ns = gz_clock_now_ns();
-	list_meshes(caster);
-	result = gz_surface_tree_build(&caster->tree, caster->meshes.shown, caster->meshes.count);
+	result = list_meshes(caster);
+	if (result == GZ_OK)
+		result = gz_surface_tree_build(&caster->tree, caster->meshes.shown,
+					       caster->meshes.count);
 	if (result != GZ_OK)
 		return result;
 	caster->tree_current = true;
@@ -297,9 +312,11 @@ static enum gz_result prepare_surfaces(struct gz_surface_caster *caster,
 	caster->revision = next_revision();
 	*out_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	const struct gz_surface_size size = gz_surface_caster_size(caster);
-	gz_debug(caster->log, "%zu triangles: surfaces %.0f ms, %zu bytes; tree %.0f ms, %zu bytes",
+	gz_debug(caster->log,
+		 "%zu triangles: surfaces %.0f ms, %zu bytes; tree %.0f ms, %zu bytes; "
+		 "normals %zu bytes",
 		 size.triangles, gz_ns_to_ms(made_ns - start_ns), size.mesh_bytes,
-		 gz_ns_to_ms(gz_clock_now_ns() - made_ns), size.tree_bytes);
+		 gz_ns_to_ms(gz_clock_now_ns() - made_ns), size.tree_bytes, size.normal_bytes);
 	return GZ_OK;
 }
 
@@ -314,6 +331,8 @@ struct gz_surface_size gz_surface_caster_size(const struct gz_surface_caster *ca
 		.triangles = gz_surface_meshes_triangles(&caster->meshes),
 		.mesh_bytes = gz_surface_meshes_bytes(&caster->meshes),
 		.tree_bytes = (size_t)caster->tree.bytes,
+		.normal_bytes =
+			gz_surface_meshes_triangles(&caster->meshes) * sizeof caster->normals[0],
 	};
 }
 
@@ -604,6 +623,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 	gz_macrocells_free(&self->field.cells);
 	gz_cube_pictures_free(&self->cube);
 	free(self->listed);
+	free(self->normals);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);
 	free(self);

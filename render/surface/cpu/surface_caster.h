@@ -96,6 +96,7 @@ struct gz_surface_size {
 	size_t triangles;
 	size_t mesh_bytes; /**< of meshes that the caster has made */
 	size_t tree_bytes;
+	size_t normal_bytes; /**< of the corners' normals beside the tree */
 };
 
 /** The meshes that it shows, for gz_surface_meshes_take(). The caster makes those anew that are

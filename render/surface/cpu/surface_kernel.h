@@ -23,7 +23,7 @@ SIMD void lift_places(const struct gz_surface_mesh *mesh, const struct meeting *
 		      vm mask, vf place[3])
 {
 	vf corners[3][3];
-	load_vertices(mesh->positions, at->vertices, mask, corners);
+	load_corners(mesh, at->triangle, mask, corners);
 	for (int corner = 0; corner < 3; corner++) {
 		vf from[3];
 		for (int axis = 0; axis < 3; axis++)

@@ -115,33 +115,56 @@ struct lanes {
 
 /* Where rays meet a mesh. */
 struct meeting {
-	vi vertices[3];          /* three times the numbers of the corners */
+	vi triangle;             /* three times its number */
 	vf corner_normals[3][3]; /* [corner][axis] */
 	vf shares[3];            /* of the corners */
 	vf normal[3];            /* of length 1 */
 	vf place[3];
 };
 
-SIMD void load_vertices(const float *vertices, const vi corners[3], vm mask, vf out[3][3])
+/* Read the corners of triangles. */
+SIMD void load_corners(const struct gz_surface_mesh *mesh, vi triangle, vm mask, vf out[3][3])
 {
-	for (int corner = 0; corner < 3; corner++)
+	for (int corner = 0; corner < 3; corner++) {
+		const vi number = vi_gather(mesh->triangles + corner, triangle, 4, mask);
+		const vi vertex = vi_mul(number, vi_set(3));
 		for (int axis = 0; axis < 3; axis++)
-			out[corner][axis] = vf_gather(vertices + axis, corners[corner], mask);
+			out[corner][axis] = vf_gather(mesh->positions + axis, vertex, mask);
+	}
+}
+
+/* Unpack normals: the inverse of gz_normal_pack(). */
+SIMD void unpack_normals(vi word, vf out[3])
+{
+	const vf unit = vf_set(1.0F / GZ_NORMAL_UNIT);
+	const vf none = vf_set(0);
+	const vf low = vf_from_i(vi_and(word, vi_set(0xffff)));
+	const vf high = vf_from_i(vi_and(word, vi_set(-0x10000)));
+	const vf x = (low - vf_set(GZ_NORMAL_OFFSET)) * unit;
+	const vf y = high * (vf_set(1.0F / 0x10000) * unit);
+	out[2] = vf_set(1) - vf_abs(x) - vf_abs(y);
+	const vf fold = vf_max(none - out[2], none); /* 0 on the upper half */
+	out[0] = x + vf_select(vf_less(x, none), fold, none - fold);
+	out[1] = y + vf_select(vf_less(y, none), fold, none - fold);
+	const vf inverse = vf_set(1) / vf_sqrt(dot_lanes(out, out));
+	for (int axis = 0; axis < 3; axis++)
+		out[axis] = out[axis] * inverse;
 }
 
 /* Read the triangles that the lanes of the mask have met, all of one mesh; not the places. */
 SIMD struct meeting read_triangles(const struct gz_surface_mesh *mesh, const struct packet *packet,
 				   struct lanes lanes)
 {
-	const vi three = vi_set(3);
-	const vi triangle = vi_mul(vi_load(packet->hit.hit.primID + lanes.first), three);
 	const vf u = vf_load(packet->hit.hit.u + lanes.first);
 	const vf v = vf_load(packet->hit.hit.v + lanes.first);
-	struct meeting at = { .shares = { vf_set(1) - u - v, u, v } };
+	struct meeting at = {
+		.triangle = vi_mul(vi_load(packet->hit.hit.primID + lanes.first), vi_set(3)),
+		.shares = { vf_set(1) - u - v, u, v },
+	};
 	for (int corner = 0; corner < 3; corner++)
-		at.vertices[corner] =
-			vi_mul(vi_gather(mesh->triangles + corner, triangle, 4, lanes.mask), three);
-	load_vertices(mesh->normals, at.vertices, lanes.mask, at.corner_normals);
+		unpack_normals(
+			vi_gather(&mesh->normals->corner[corner], at.triangle, 4, lanes.mask),
+			at.corner_normals[corner]);
 	for (int axis = 0; axis < 3; axis++)
 		at.normal[axis] = vf_fma(v, at.corner_normals[2][axis],
 					 vf_fma(u, at.corner_normals[1][axis],
