@@ -28,7 +28,8 @@ const struct gz_option gz_attention_options[] = {
 	  .help = "time that 95 of 100 frames may take, ms; the plan gets as coarse as needed; "
 		  "0 = no limit" },
 	{ "attention.importance", GZ_OPTION_DOUBLE, AT(importance), 0, 1, .preset = "0",
-	  .help = "how far the object that is looked at is raised in importance, 0 (not) to 1" },
+	  .help = "how far the object or the values that are looked at are raised in importance, 0 "
+		  "(not) to 1" },
 	{ "attention.importance_dwell_ms", GZ_OPTION_DOUBLE, AT(importance_dwell_ms), 0, 10000,
 	  .preset = "200", .help = "how long an object is looked at before it is raised, ms" },
 	{ "attention.importance_fade_ms", GZ_OPTION_DOUBLE, AT(importance_fade_ms), 1, 10000,

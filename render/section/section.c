@@ -1,11 +1,20 @@
 #include "render/section/section.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "render/data/voxel_colour.h"
 
 /* Steps of a ray in a voxel length (chosen: a surface is found to half a voxel). */
 #define HIT_STEPS 2.0
+
+/* Opacity at which a look ends, and the least one with which something is seen. Chosen. */
+#define SEEN_WHOLLY 0.999
+#define SEEN_LEAST  0.05
+
+/* How far behind the border of something its matter is looked for, voxel lengths. Chosen: twice
+ * what interpolation spreads a border over, and a half. */
+#define SEEN_ON 3.0
 
 /* A position along one axis: two neighbouring voxels, as steps in memory, and the share of the
  * second. */
@@ -148,16 +157,30 @@ double gz_section_value(const struct gz_volume *volume, const double place[3])
 			 nearest_voxel(volume, 1, place[1]), nearest_voxel(volume, 0, place[0]));
 }
 
-/* Colour and opacity of a data value; 0 and 1 stand for the volume's range unless the function has
- * one of its own. */
-static void look_up(const struct gz_transfer *transfer, const struct gz_volume *volume,
-		    double value, double out_rgba[4])
+/* The data values that 0 and 1 of a function stand for: the volume's range unless it has its own.
+ */
+static void ends_of(const struct gz_transfer *transfer, const struct gz_volume *volume,
+		    double out_ends[2])
 {
 	const double ends[2] = { volume->slope * volume->stored_min + volume->intercept,
 				 volume->slope * volume->stored_max + volume->intercept };
-	const double low = transfer->has_range ? transfer->range[0] : fmin(ends[0], ends[1]);
-	const double high = transfer->has_range ? transfer->range[1] : fmax(ends[0], ends[1]);
-	gz_transfer_evaluate(transfer, high > low ? (value - low) / (high - low) : 0, out_rgba);
+	out_ends[0] = transfer->has_range ? transfer->range[0] : fmin(ends[0], ends[1]);
+	out_ends[1] = transfer->has_range ? transfer->range[1] : fmax(ends[0], ends[1]);
+}
+
+/* From a data value to one of a function. */
+static double value_of_function(const double ends[2], double value)
+{
+	return ends[1] > ends[0] ? (value - ends[0]) / (ends[1] - ends[0]) : 0;
+}
+
+/* Colour and opacity of a data value. */
+static void look_up(const struct gz_transfer *transfer, const struct gz_volume *volume,
+		    double value, double out_rgba[4])
+{
+	double ends[2];
+	ends_of(transfer, volume, ends);
+	gz_transfer_evaluate(transfer, value_of_function(ends, value), out_rgba);
 }
 
 static uint8_t byte_of(double share)
@@ -227,14 +250,16 @@ static void box_ray(const struct gz_volume *volume, const double origin[3],
 	}
 }
 
-/* The part of a ray within the box, as multiples of its direction. */
-static bool cross_box(const double from[3], const double along[3], double out_ends[2])
+/* The part of a ray within a box, as multiples of its direction. */
+static bool cross_box(const double from[3], const double along[3], const struct gz_clip_box *box,
+		      double out_ends[2])
 {
 	out_ends[0] = 0;
 	out_ends[1] = INFINITY;
 	for (int i = 0; i < 3; i++) {
-		const double a = (0 - from[i]) / along[i], b = (1 - from[i]) / along[i];
-		if (along[i] == 0 && (from[i] < 0 || from[i] > 1))
+		const double a = (box->least[i] - from[i]) / along[i];
+		const double b = (box->greatest[i] - from[i]) / along[i];
+		if (along[i] == 0 && (from[i] < box->least[i] || from[i] > box->greatest[i]))
 			return false;
 		if (along[i] == 0)
 			continue;
@@ -244,43 +269,117 @@ static bool cross_box(const double from[3], const double along[3], double out_en
 	return out_ends[0] < out_ends[1] && isfinite(out_ends[1]);
 }
 
-/* The opacity of a voxel length at a place. */
-static double opacity_at(const struct gz_volume *volume, const struct gz_transfer *transfer,
-			 const double place[3])
-{
-	double rgba[4];
-	const double value =
-		mix_value(volume, find_between(volume, 2, place[2]),
-			  find_between(volume, 1, place[1]), find_between(volume, 0, place[0]));
-	look_up(transfer, volume, value, rgba);
-	return rgba[3];
-}
+/* Steps along a ray through a volume. */
+struct walk {
+	const struct gz_volume *volume;
+	const struct gz_transfer *transfer;
+	double from[3], along[3]; /* the ray, in fractions of the box */
+	double begin, step;       /* multiples of its direction */
+	long count;
+};
 
-bool gz_section_hit(const struct gz_volume *volume, const struct gz_transfer *transfer,
-		    const double origin[3], const double direction[3], double out_place[3])
+/* @return false: the ray misses what is shown */
+static bool begin_walk(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		       const struct gz_section_ray *ray, struct walk *out_walk)
 {
-	double from[3], along[3], ends[2], voxels = 0, clear = 1;
-	box_ray(volume, origin, direction, from, along);
-	if (!cross_box(from, along, ends))
+	struct walk walk = { .volume = volume, .transfer = transfer };
+	double ends[2], voxels = 0;
+	box_ray(volume, ray->origin, ray->direction, walk.from, walk.along);
+	if (!cross_box(walk.from, walk.along, &ray->clip, ends) || ends[0] >= ray->until)
 		return false;
 	const double voxel_mm =
 		fmin(volume->spacing[0], fmin(volume->spacing[1], volume->spacing[2]));
 	for (int i = 0; i < 3; i++)
-		voxels += pow(along[i] * volume->dims[i] * volume->spacing[i] / voxel_mm, 2);
-	const double step = 1 / (HIT_STEPS * sqrt(voxels));
-	const long count = lround(ceil((ends[1] - ends[0]) / step));
-	for (long n = 0; n < count; n++) {
-		double place[3];
-		for (int i = 0; i < 3; i++)
-			place[i] = within_box(from[i] +
-					      along[i] * (ends[0] + ((double)n + 0.5) * step));
-		clear *= 1 - gz_transfer_opacity_over(opacity_at(volume, transfer, place),
-						      1 / HIT_STEPS);
-		if (clear > 0.5)
-			continue;
-		for (int i = 0; i < 3; i++)
-			out_place[i] = place[i];
-		return true;
+		voxels += pow(walk.along[i] * volume->dims[i] * volume->spacing[i] / voxel_mm, 2);
+	walk.begin = ends[0];
+	walk.step = 1 / (HIT_STEPS * sqrt(voxels));
+	walk.count = lround(ceil((fmin(ends[1], ray->until) - ends[0]) / walk.step));
+	*out_walk = walk;
+	return true;
+}
+
+static double depth_of_step(const struct walk *walk, long n)
+{
+	return walk->begin + ((double)n + 0.5) * walk->step;
+}
+
+static void place_of_step(const struct walk *walk, long n, double out_place[3])
+{
+	for (int i = 0; i < 3; i++)
+		out_place[i] = within_box(walk->from[i] + walk->along[i] * depth_of_step(walk, n));
+}
+
+static double value_of_step(const struct walk *walk, long n)
+{
+	const struct gz_volume *volume = walk->volume;
+	double place[3];
+	place_of_step(walk, n, place);
+	return mix_value(volume, find_between(volume, 2, place[2]),
+			 find_between(volume, 1, place[1]), find_between(volume, 0, place[0]));
+}
+
+/* The opacity of a voxel length where a step is. */
+static double opacity_of_step(const struct walk *walk, long n)
+{
+	double rgba[4];
+	look_up(walk->transfer, walk->volume, value_of_step(walk, n), rgba);
+	return rgba[3];
+}
+
+/* Go on until the steps have some opacity together. @return the last one; count: they have less */
+static long walk_until(const struct walk *walk, double opacity, double *out_passed)
+{
+	double clear = 1;
+	long n = 0;
+	for (; n < walk->count; n++) {
+		clear *= 1 - gz_transfer_opacity_over(opacity_of_step(walk, n), 1 / HIT_STEPS);
+		if (1 - clear >= opacity)
+			break;
 	}
-	return false;
+	*out_passed = 1 - clear;
+	return n;
+}
+
+static const struct gz_clip_box whole_box = { .greatest = { 1, 1, 1 } };
+
+bool gz_section_hit(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		    const double origin[3], const double direction[3], double out_place[3])
+{
+	struct gz_section_ray ray = { .until = INFINITY, .clip = whole_box };
+	struct walk walk;
+	double passed;
+	memcpy(ray.origin, origin, sizeof ray.origin);
+	memcpy(ray.direction, direction, sizeof ray.direction);
+	if (!begin_walk(volume, transfer, &ray, &walk))
+		return false;
+	const long n = walk_until(&walk, 0.5, &passed);
+	if (n == walk.count)
+		return false;
+	place_of_step(&walk, n, out_place);
+	return true;
+}
+
+bool gz_section_look(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		     const struct gz_section_ray *ray, struct gz_section_seen *out_seen)
+{
+	struct walk walk;
+	double opacity, passed, ends[2];
+	if (!begin_walk(volume, transfer, ray, &walk))
+		return false;
+	(void)walk_until(&walk, SEEN_WHOLLY, &opacity);
+	if (opacity < SEEN_LEAST)
+		return false;
+	long n = walk_until(&walk, opacity / 2, &passed);
+	const long last = n + (long)(SEEN_ON * HIT_STEPS);
+	while (n + 1 < walk.count && n < last &&
+	       opacity_of_step(&walk, n + 1) > opacity_of_step(&walk, n))
+		n++;
+	ends_of(transfer, volume, ends);
+	*out_seen = (struct gz_section_seen) {
+		.value = value_of_function(ends, value_of_step(&walk, n)),
+		.unit = ends[1] > ends[0] ? 1 / (ends[1] - ends[0]) : 0,
+		.depth = depth_of_step(&walk, n),
+		.opacity = opacity,
+	};
+	return true;
 }

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 #include "base/result.h"
+#include "render/data/clip_box.h"
 #include "render/data/volume.h"
 #include "render/picture/image.h"
 #include "render/transfer/transfer.h"
@@ -96,5 +97,33 @@ enum gz_result gz_section_draw(const struct gz_section_request *request, int wid
  */
 bool gz_section_hit(const struct gz_volume *volume, const struct gz_transfer *transfer,
 		    const double origin[3], const double direction[3], double out_place[3]);
+
+/** A ray through a volume, in the world of render/data/volume.h. */
+struct gz_section_ray {
+	double origin[3], direction[3];
+	double until;            /**< where it ends, multiples of the direction; may be INFINITY */
+	struct gz_clip_box clip; /**< nothing is seen outside */
+};
+
+/** What is seen of a volume along a ray. */
+struct gz_section_seen {
+	double value;   /**< at the place that is seen, of the transfer function: 0 to 1 over its
+			   range, and beyond */
+	double unit;    /**< growth of that value for 1 of the data */
+	double depth;   /**< of the place, multiples of the ray's direction */
+	double opacity; /**< of all that the ray passes, (0, 1] */
+};
+
+/**
+ * Find what somebody sees who looks along a ray: the place in front of which half of all opacity
+ * lies, and from there up to three voxel lengths on, as long as opacity rises. So a surface gives
+ * the value of its matter, not one in between.
+ *
+ * @param volume  for which gz_section_possible() holds
+ * @param[out] out_seen  written on success
+ * @return false: the ray passes nothing, or too little to be seen
+ */
+bool gz_section_look(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		     const struct gz_section_ray *ray, struct gz_section_seen *out_seen);
 
 #endif

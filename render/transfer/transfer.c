@@ -32,7 +32,8 @@ static void point_rgba(const struct gz_transfer_point *point, double out_rgba[4]
 	out_rgba[3] = point->opacity;
 }
 
-void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, double out_rgba[4])
+/* Colour and opacity without emphasis. */
+static void evaluate_points(const struct gz_transfer *transfer, double value, double out_rgba[4])
 {
 	size_t before = point_before(transfer, value);
 	if (before == transfer->count) { /* below the first point, or NaN */
@@ -49,6 +50,13 @@ void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, doub
 	for (int i = 0; i < 3; i++)
 		out_rgba[i] += weight * (b->rgb[i] - a->rgb[i]);
 	out_rgba[3] += weight * (b->opacity - a->opacity);
+}
+
+void gz_transfer_evaluate(const struct gz_transfer *transfer, double value, double out_rgba[4])
+{
+	evaluate_points(transfer, value, out_rgba);
+	if (transfer->emphasis.share > 0)
+		out_rgba[3] = gz_transfer_emphasised(&transfer->emphasis, value, out_rgba[3]);
 }
 
 double gz_transfer_opacity_over(double opacity, double length)
@@ -72,7 +80,7 @@ bool gz_transfer_same(const struct gz_transfer *a, const struct gz_transfer *b)
 	for (size_t i = 0; i < a->count; i++)
 		if (!gz_transfer_point_same(&a->points[i], &b->points[i]))
 			return false;
-	return true;
+	return gz_transfer_emphasis_same(&a->emphasis, &b->emphasis);
 }
 
 static double opacity_of(const struct gz_transfer *transfer, double value)

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "base/text.h"
+#include "render/transfer/emphasis.h"
 
 #define GZ_TRANSFER_POINTS_MAX 256
 
@@ -35,12 +36,14 @@ struct gz_transfer {
 	enum gz_transfer_interpolation interpolation;
 	bool has_range;  /**< false: 0 and 1 stand for the volume's minimum and maximum */
 	double range[2]; /**< the data values that 0 and 1 stand for */
+	/** Of what is shown for a while. Files do not hold it. */
+	struct gz_transfer_emphasis emphasis;
 };
 
 /** Whether two points have equal value, colour and opacity. */
 bool gz_transfer_point_same(const struct gz_transfer_point *a, const struct gz_transfer_point *b);
 
-/** Whether two functions have equal points, interpolation and range. */
+/** Whether two functions have equal points, interpolation, range and emphasis. */
 bool gz_transfer_same(const struct gz_transfer *a, const struct gz_transfer *b);
 
 /**

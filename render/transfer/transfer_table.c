@@ -124,6 +124,9 @@ static int count_entries(const struct gz_transfer *transfer, double low, double 
 	double narrowest = INFINITY;
 	for (int channel = 0; channel < 4; channel++)
 		narrowest = fmin(narrowest, narrowest_peak(transfer, channel, low, high));
+	const struct gz_transfer_emphasis *emphasis = &transfer->emphasis;
+	if (emphasis->share > 0)
+		narrowest = fmin(narrowest, emphasis->greatest - emphasis->least);
 	const double share = high > low ? narrowest / (high - low) : 1;
 	int count = GZ_TRANSFER_TABLE_SIZE;
 	if (share * (count - 1) >= PEAK_LEAST)

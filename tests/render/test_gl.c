@@ -317,6 +317,10 @@ static void new_transfer_function_and_volume_replace_the_old(void **state)
 	assert_int_equal(gz_raycaster_set_transfer(pair.cpu, &scene.transfer), GZ_OK);
 	assert_int_equal(gz_raycaster_set_transfer(pair.gl, &scene.transfer), GZ_OK);
 	check_pair(&pair, &scene, 90, 90, "transfer");
+	scene.transfer.emphasis = (struct gz_transfer_emphasis) { 0.7, 0.4, 0.6 };
+	assert_int_equal(gz_raycaster_set_transfer(pair.cpu, &scene.transfer), GZ_OK);
+	assert_int_equal(gz_raycaster_set_transfer(pair.gl, &scene.transfer), GZ_OK);
+	check_pair(&pair, &scene, 90, 90, "emphasis");
 	assert_int_equal(gz_raycaster_set_volume(pair.cpu, &other.volume), GZ_OK);
 	assert_int_equal(gz_raycaster_set_volume(pair.gl, &other.volume), GZ_OK);
 	assert_int_equal(gz_raycaster_set_transfer(pair.cpu, &other.transfer), GZ_OK);

@@ -15,13 +15,19 @@ static struct gz_attention_params all_of_it(void)
 	return params;
 }
 
-/* Look at an object for some frames. */
-static void look(struct gz_interest *interest, uint32_t object, int frames)
+/* Look at something for some frames. */
+static void look_at_thing(struct gz_interest *interest, const struct gz_looked_at *thing,
+			  int frames)
 {
 	const struct gz_attention_params params = all_of_it();
 	for (int i = 0; i < frames; i++)
 		*interest =
-			gz_interest_step(*interest, &params, object, interest->now_ns + FRAME_NS);
+			gz_interest_step(*interest, &params, thing, interest->now_ns + FRAME_NS);
+}
+
+static void look(struct gz_interest *interest, uint32_t object, int frames)
+{
+	look_at_thing(interest, &(struct gz_looked_at) { .id = object }, frames);
 }
 
 static struct gz_raised raised(const struct gz_interest *interest)
@@ -85,8 +91,9 @@ static void time_that_stands_or_runs_back_changes_nothing(void **state)
 	struct gz_interest interest = { 0 };
 	look(&interest, 7, 30);
 	const struct gz_raised before = raised(&interest);
-	interest = gz_interest_step(interest, &params, 7, interest.now_ns);
-	interest = gz_interest_step(interest, &params, 7, interest.now_ns - GZ_NS_PER_S);
+	const struct gz_looked_at seven = { .id = 7 };
+	interest = gz_interest_step(interest, &params, &seven, interest.now_ns);
+	interest = gz_interest_step(interest, &params, &seven, interest.now_ns - GZ_NS_PER_S);
 	const struct gz_raised after = raised(&interest);
 	assert_true(before.share > 0 && gz_raised_same(&before, &after));
 }
@@ -106,6 +113,31 @@ static void share_of_the_setting_is_raised(void **state)
 	assert_int_equal(gz_interest_raised(&interest, &params).id, 0);
 }
 
+static void values_that_look_alike_are_one_thing(void **state)
+{
+	(void)state;
+	struct gz_interest interest = { 0 };
+	const struct gz_looked_at skin = { 1, 0.3, 0.2, 0.4 }, more_skin = { 1, 0.39, 0.25, 0.5 };
+	const struct gz_looked_at bone = { 1, 0.7, 0.5, 1 };
+	look_at_thing(&interest, &skin, 60);
+	assert_true(raised(&interest).share == 1 && raised(&interest).least == 0.2);
+	/* Its range does not change while it is looked at. */
+	look_at_thing(&interest, &more_skin, 60);
+	assert_true(raised(&interest).greatest == 0.4 && gz_interest_at_rest(&interest));
+	look_at_thing(&interest, &bone, 30);
+	assert_true(raised(&interest).share < 1 && raised(&interest).greatest == 0.4);
+	/* Back before bone has come: the skin comes again. */
+	look_at_thing(&interest, &more_skin, 60);
+	assert_true(raised(&interest).share == 1 && raised(&interest).greatest == 0.4);
+	look_at_thing(&interest, &bone, 90);
+	assert_true(raised(&interest).share == 1 && raised(&interest).least == 0.5);
+	/* A value beside the range is another thing; so is an object of the same number. */
+	look_at_thing(&interest, &(struct gz_looked_at) { 1, 0.45, 0.41, 0.499 }, 90);
+	assert_true(raised(&interest).least == 0.41 && raised(&interest).share == 1);
+	look(&interest, 1, 90);
+	assert_true(raised(&interest).greatest == 0 && raised(&interest).share == 1);
+}
+
 TEST_SUITE(interest)
 {
 	const struct CMUnitTest tests[] = {
@@ -113,6 +145,7 @@ TEST_SUITE(interest)
 		cmocka_unit_test(one_object_fades_out_before_another_fades_in),
 		cmocka_unit_test(time_that_stands_or_runs_back_changes_nothing),
 		cmocka_unit_test(share_of_the_setting_is_raised),
+		cmocka_unit_test(values_that_look_alike_are_one_thing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -255,6 +255,97 @@ static void a_ray_ends_where_it_becomes_opaque(void **state)
 	free(volume.voxels);
 }
 
+/* A column along z of the given voxels, in a box of 5 x 5 times so many. */
+static void make_column(struct gz_volume *volume, const float *values, int count)
+{
+	*volume = (struct gz_volume) { .dims = { 5, 5, count },
+				       .spacing = { 1, 1, 1 },
+				       .type = GZ_VOXEL_F32,
+				       .slope = 1,
+				       .stored_max = 10 };
+	float *voxels = calloc((size_t)25 * (size_t)count, sizeof *voxels);
+	assert_non_null(voxels);
+	for (int i = 0; i < 25 * count; i++)
+		voxels[i] = values[i / 25];
+	volume->voxels = voxels;
+}
+
+static bool look_up_z(const struct gz_volume *volume, const struct gz_transfer *transfer,
+		      double until, struct gz_section_seen *seen)
+{
+	const struct gz_section_ray ray = {
+		{ 0, 0, -2 }, { 0, 0, 1 }, until, { .greatest = { 1, 1, 1 } }
+	};
+	return gz_section_look(volume, transfer, &ray, seen);
+}
+
+static void a_look_finds_the_value_that_is_seen(void **state)
+{
+	(void)state;
+	/* Skin of 3, a gap, bone of 8. */
+	static const float values[20] = {
+		0, 0, 3, 3, 0, 0, 0, 0, 0, 0, 8, 8, 8, 8, 8, 8, 8, 8, 8, 8
+	};
+	struct gz_volume volume;
+	struct gz_section_seen seen;
+	struct gz_transfer transfer = {
+		.count = 4,
+		.points = { { .value = 0.1, .opacity = 0 },
+			    { .value = 0.3, .opacity = 0.1 },
+			    { .value = 0.5, .opacity = 0.1 },
+			    { .value = 0.8, .opacity = 0.9 } },
+	};
+	make_column(&volume, values, 20);
+	/* Bone is seen through thin skin, and its own value, not one on the way to it. */
+	assert_true(look_up_z(&volume, &transfer, INFINITY, &seen));
+	assert_float_equal(seen.value, 0.8, 1e-6);
+	assert_true(seen.opacity > 0.99 && fabs(seen.unit - 0.1) < 1e-12);
+	assert_true(seen.depth > 2 && seen.depth < 2 + 2.0 / 20);
+	/* Up to something in front of it only the skin, of which less than half hides it. */
+	assert_true(look_up_z(&volume, &transfer, 1.8, &seen));
+	assert_float_equal(seen.value, 0.3, 1e-6);
+	assert_true(seen.opacity > 0.15 && seen.opacity < 0.4);
+	transfer.points[1].opacity = transfer.points[2].opacity = 0.9;
+	assert_true(look_up_z(&volume, &transfer, INFINITY, &seen));
+	assert_float_equal(seen.value, 0.3, 1e-6);
+	/* Nothing but air, too little of anything, or a box of which nothing is shown there. */
+	assert_false(look_up_z(&volume, &transfer, 1.55, &seen));
+	for (int i = 0; i < 4; i++)
+		transfer.points[i].opacity *= 0.003;
+	assert_false(look_up_z(&volume, &transfer, INFINITY, &seen));
+	free(volume.voxels);
+}
+
+static void a_look_sees_what_the_clip_box_leaves(void **state)
+{
+	(void)state;
+	static const float values[4] = { 3, 3, 8, 8 };
+	const struct gz_transfer solid = {
+		.count = 2,
+		.points = { { .value = 0.1, .opacity = 0 }, { .value = 0.1, .opacity = 1 } },
+	};
+	struct gz_section_ray ray = {
+		{ 0, 0, -2 }, { 0, 0, 1 }, INFINITY, { .greatest = { 1, 1, 1 } }
+	};
+	struct gz_volume volume;
+	struct gz_section_seen seen;
+	make_column(&volume, values, 4);
+	assert_true(gz_section_look(&volume, &solid, &ray, &seen));
+	assert_float_equal(seen.value, 0.3, 1e-6);
+	ray.clip.least[2] = 0.7;
+	assert_true(gz_section_look(&volume, &solid, &ray, &seen));
+	assert_float_equal(seen.value, 0.8, 1e-6);
+	ray.clip.least[0] = 0.6;
+	assert_false(gz_section_look(&volume, &solid, &ray, &seen));
+	/* Labels are not mixed. */
+	ray.clip = (struct gz_clip_box) { .greatest = { 1, 1, 1 } };
+	ray.clip.least[2] = 0.49;
+	volume.labels = true;
+	assert_true(gz_section_look(&volume, &solid, &ray, &seen));
+	assert_true(seen.value == 0.3 || seen.value == 0.8);
+	free(volume.voxels);
+}
+
 TEST_SUITE(section)
 {
 	const struct CMUnitTest tests[] = {
@@ -267,6 +358,8 @@ TEST_SUITE(section)
 		cmocka_unit_test(distances_are_in_millimetres),
 		cmocka_unit_test(all_distances_fit_their_text),
 		cmocka_unit_test(a_ray_ends_where_it_becomes_opaque),
+		cmocka_unit_test(a_look_finds_the_value_that_is_seen),
+		cmocka_unit_test(a_look_sees_what_the_clip_box_leaves),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import unittest
 
-from picture import run, write_labels, write_scene
+from picture import read_png, run, write_labels, write_scene
 
 GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
 PLACE = tempfile.TemporaryDirectory(prefix="gazecast-test-scene-")
@@ -64,16 +64,67 @@ class Session(unittest.TestCase):
         self.assertEqual([frame[-2] for frame in frames], ["0", "1", "1", "1", "1"])
         self.replay_is_the_same()
 
+    def look_at(self, name, place, count=120):
+        """A log of a gaze that rests: on place(i) at the sample i, of 100 a second."""
+        with open(self.path(name), "w", encoding="utf-8") as out:
+            out.write("#gazecast-log 1\n#tracker synthetic\n#rate_hz 100\n")
+            for i in range(count):
+                out.write("%d\t\t%d\t%s%s\n" % (
+                    i, 10**9 + i * 10**7, ("%g\t%g\t1" % place(i)),
+                    2 * ("\t\t\t0" + "\t" * 8)))
+
+    def write_two_materials(self, *lines):
+        """Two halves of a volume, of values 60 and 200, and another colour for each."""
+        with open(self.path("halves.raw"), "wb") as out:
+            for i in range(12 ** 3):
+                inside = all(1 <= k <= 10 for k in (i % 12, i // 12 % 12, i // 144))
+                out.write(bytes([(60 if i % 12 < 6 else 200) if inside else 0]))
+        with open(self.path("halves.tf"), "w", encoding="utf-8") as out:
+            out.write("range 0 255\n0.1 1 0 0 0\n0.2 1 0 0 0.3\n0.3 1 0 0 0.3\n"
+                      "0.4 1 0 0 0\n0.6 0 1 0 0\n0.7 0 1 0 0.3\n1 0 1 0 0.3\n")
+        path = self.path("halves.scene")
+        with open(path, "w", encoding="utf-8") as out:
+            out.write("\n".join(("[volume]", "file = halves.raw", "dims = 12 12 12",
+                                 "type = uint8", "spacing = 1 1 1", "[transfer]",
+                                 "file = halves.tf", "[camera]", "eye = 0 -2.5 0") + lines))
+            out.write("\n")
+        return path
+
+    def test_values_looked_at_stand_out_and_replay_bit_for_bit(self):
+        scene = self.write_two_materials()
+        self.look_at("halves.gzl", lambda i: (0.4 if i < 50 else 0.6, 0.5))
+        for importance in (0, 1):
+            self.good(scene, "--size", "64x48", "--gaze", self.path("halves.gzl"), "--fps", 20,
+                      "--frames", 26, "--attention.importance", importance, "--record",
+                      self.path("v%d.session" % importance), "--out",
+                      self.path("v%d-%%d.png" % importance))
+        with open(self.path("v1.session/frames.tsv"), encoding="utf-8") as source:
+            raised = [line.split("\t") for line in source if line.startswith("!raise")]
+        shares = [float(line[2]) for line in raised]
+        ranges = [(float(line[3]), float(line[4])) for line in raised if len(line) > 3]
+        # One after the other: the red half, nothing, the green half.
+        self.assertEqual(len(set(ranges)), 2, raised)
+        self.assertTrue(ranges[0][0] < 60 / 255 < ranges[0][1] < 0.6, ranges)
+        self.assertTrue(0.4 < ranges[-1][0] < 200 / 255 < ranges[-1][1], ranges)
+        first = shares.index(max(shares))
+        self.assertEqual(shares[:first + 1], sorted(shares[:first + 1]), shares)
+        self.assertIn(0, shares[first:], "the second comes before the first has gone")
+        self.good("--replay", self.path("v1.session"), "--out", self.path("is-%d.png"))
+        for k in range(26):
+            self.assertTrue(self.read("v1-%d.png" % k) == self.read("is-%d.png" % k),
+                            "picture %d is another" % k)
+        self.assertTrue(self.read("v1-3.png") == self.read("v0-3.png"))
+        # The half that is looked at becomes denser, the other one fades.
+        for k, more, less in ((9, (20, 24), (42, 24)), (25, (42, 24), (20, 24))):
+            plain, shown = (read_png(self.path("v%d-%d.png" % (i, k))) for i in (0, 1))
+            self.assertGreater(sum(shown.at(*more)), sum(plain.at(*more)))
+            self.assertLess(sum(shown.at(*less)), 0.9 * sum(plain.at(*less)))
+
     def record_looks(self, importance):
         """Two regions side by side, in which the gaze rests on one, then on the other."""
         scene = write_labels(self.place.name, "[render]", "technique = illustrate", "[camera]",
                              "eye = 0 -2.5 0", "[illustration]", "scene_information = importance")
-        with open(self.path("looks.gzl"), "w", encoding="utf-8") as out:
-            out.write("#gazecast-log 1\n#tracker synthetic\n#rate_hz 100\n")
-            for i in range(120):
-                out.write("%d\t\t%d\t%s%s\n" % (
-                    i, 10**9 + i * 10**7, ("%g\t0.5\t1" % (0.45 if i < 50 else 0.55)),
-                    2 * ("\t\t\t0" + "\t" * 8)))
+        self.look_at("looks.gzl", lambda i: (0.45 if i < 50 else 0.55, 0.5))
         self.good(scene, "--size", "64x48", "--gaze", self.path("looks.gzl"), "--fps", 20,
                   "--frames", 22, "--attention.importance", importance, "--record",
                   self.path("%s.session" % importance), "--out",

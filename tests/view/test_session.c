@@ -162,16 +162,27 @@ static void check_round_trip(const struct gz_session_frame *frame)
 static void what_is_raised_is_read_back_to_the_bit(void **state)
 {
 	(void)state;
-	struct gz_raised raised = { UINT32_MAX, 1.0 / 3 }, back;
-	static const char *const wrong[] = { "!raise\t7", "!raise\t7\t1.5", "!raise\t-1\t0",
-					     "!raise\t7\t0\t0", "!raise\t7\tnan" };
-	struct gz_text text = { 0 };
+	const struct gz_raised raised[] = { { .id = UINT32_MAX, .share = 1.0 / 3 },
+					    { 1, 1, 1.0 / 3, 2.0 / 3 },
+					    { 1, 1e-9, -0.1, 1e9 } };
+	struct gz_raised back;
+	static const char *const wrong[] = { "!raise\t7",
+					     "!raise\t7\t1.5",
+					     "!raise\t-1\t0",
+					     "!raise\t7\t0\t0",
+					     "!raise\t7\tnan",
+					     "!raise\t7\t1\t1\t1",
+					     "!raise\t7\t1\t0\tinf",
+					     "!raise\t7\t1\t0\t1\t2" };
 	char line[32];
-	gz_session_print_raised(&raised, &text);
-	text.bytes[text.length - 1] = '\0';
-	assert_int_equal(gz_session_parse_raised(text.bytes, &back), GZ_OK);
-	assert_true(gz_raised_same(&raised, &back));
-	gz_text_free(&text);
+	for (size_t i = 0; i < sizeof raised / sizeof raised[0]; i++) {
+		struct gz_text text = { 0 };
+		gz_session_print_raised(&raised[i], &text);
+		text.bytes[text.length - 1] = '\0';
+		assert_int_equal(gz_session_parse_raised(text.bytes, &back), GZ_OK);
+		assert_true(gz_raised_same(&raised[i], &back));
+		gz_text_free(&text);
+	}
 	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
 		snprintf(line, sizeof line, "%s", wrong[i]);
 		assert_int_equal(gz_session_parse_raised(line, &back), GZ_ERR_FORMAT);

@@ -74,8 +74,7 @@ static enum gz_result make_standard(struct gz_comparison *comparison,
 	double share;
 	if (gz_reference_worker_set_objects(comparison->worker, objects, count) != GZ_OK)
 		return GZ_ERR_NO_MEM;
-	gz_reference_worker_set_transfer(comparison->worker,
-					 &gz_frame_maker_scene(comparison->maker)->transfer);
+	gz_reference_worker_set_transfer(comparison->worker, gz_frame_transfer(comparison->maker));
 	const bool another = gz_reference_worker_ask(comparison->worker, view);
 	while (gz_reference_worker_busy(comparison->worker, &share))
 		while (sem_wait(&comparison->finished) != 0) /* a signal came */

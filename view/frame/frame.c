@@ -12,6 +12,7 @@
 #include "render/scene/scene_open.h"
 #include "render/scene/techniques.h"
 #include "view/frame/label_change.h"
+#include "view/frame/looked_at.h"
 #include "view/frame/spare.h"
 
 #define GZ_LOG_MODULE "gazeview"
@@ -61,6 +62,7 @@ struct gz_frame_maker {
 	struct gz_raised raised;        /* for the next frame */
 	struct gz_raised raised_shown;  /* by the renderer */
 	struct gz_object_style raised_style;
+	struct gz_transfer raised_transfer; /* with what is raised of its values */
 	struct {
 		struct gz_camera camera;
 		struct gz_ray_params rays;
@@ -179,18 +181,33 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	return GZ_OK;
 }
 
+/* Whether some values of a volume are raised, not an object. */
+static bool raises_values(const struct gz_raised *raised)
+{
+	return raised->id != 0 && raised->least != raised->greatest;
+}
+
 /* Note how the object is shown that is raised in importance. Its importance without the gaze is
- * that of the scene. */
+ * that of the scene, and so is its transfer function. */
 static void style_raised(struct gz_frame_maker *maker)
 {
+	const struct gz_raised *raised = &maker->raised_shown;
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	if (raised->id == 0)
+		return;
 	const size_t count = gz_scene_list_objects(&maker->scene, objects, GZ_SCENE_LISTED_MAX);
 	for (size_t i = 0; i < count; i++) {
-		if (objects[i].id != maker->raised_shown.id)
+		if (objects[i].id != raised->id)
 			continue;
 		maker->raised_style = objects[i].style ? *objects[i].style : gz_object_style_plain;
-		maker->raised_style.importance = gz_raised_importance(
-			maker->raised_style.importance, maker->raised_shown.share);
+		maker->raised_style.importance =
+			gz_raised_importance(maker->raised_style.importance, raised->share);
+		if (!raises_values(raised) || !objects[i].transfer)
+			continue;
+		maker->raised_transfer = *objects[i].transfer;
+		maker->raised_transfer.emphasis =
+			(struct gz_transfer_emphasis) { raised->share, raised->least,
+							raised->greatest };
 	}
 }
 
@@ -202,8 +219,11 @@ static size_t list_scene_objects(const struct gz_frame_maker *maker,
 	for (size_t i = 0; i < count; i++) {
 		out_objects[i].transfer_revision = maker->transfer_revision;
 		out_objects[i].data_revision = maker->data_revision;
-		if (maker->raised_shown.id != 0 && out_objects[i].id == maker->raised_shown.id)
-			out_objects[i].style = &maker->raised_style;
+		if (maker->raised_shown.id == 0 || out_objects[i].id != maker->raised_shown.id)
+			continue;
+		out_objects[i].style = &maker->raised_style;
+		if (out_objects[i].transfer && raises_values(&maker->raised_shown))
+			out_objects[i].transfer = &maker->raised_transfer;
 	}
 	return count;
 }
@@ -327,6 +347,7 @@ enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 	drop_spares(maker);
 	maker->scene.transfer = *transfer;
 	maker->transfer_revision++;
+	style_raised(maker);
 	maker->any_made = false;
 	const enum gz_result r = show_scene_objects(maker);
 	if (r != GZ_OK)
@@ -481,11 +502,12 @@ enum gz_result gz_frame_show_taken(struct gz_frame_maker *maker)
 	return r;
 }
 
-static uint32_t object_at(struct gz_frame_maker *maker, const struct gz_camera *camera,
-			  const struct gz_ray_params *rays, const int size_px[2],
-			  struct gz_point point)
+/* A place of a picture. @return false: it is not in the picture, or nothing is shown */
+static bool request_pick(const struct gz_frame_maker *maker, const struct gz_camera *camera,
+			 const struct gz_ray_params *rays, const int size_px[2],
+			 struct gz_point point, struct gz_pick_request *out_request)
 {
-	const struct gz_pick_request request = {
+	*out_request = (struct gz_pick_request) {
 		.camera = camera,
 		.settings = rays,
 		.width = size_px[0],
@@ -493,32 +515,33 @@ static uint32_t object_at(struct gz_frame_maker *maker, const struct gz_camera *
 		.x = (double)point.x * size_px[0],
 		.y = (double)point.y * size_px[1],
 	};
-	struct gz_pick pick;
-	if (!maker->pictures || !(point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1) ||
-	    gz_picture_maker_pick(maker->pictures, &request, &pick) != GZ_OK)
-		return 0;
-	return gz_pick_most_seen(&pick);
+	return maker->pictures && point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1;
 }
 
-/* The object at the focus, as the last frame showed it; a lost gaze looks at none. */
-static uint32_t attended_object(struct gz_frame_maker *maker)
+/* What is seen at the focus, as the last frame showed it; a lost gaze looks at nothing. */
+static struct gz_looked_at attended_thing(struct gz_frame_maker *maker)
 {
 	const int size_px[2] = { maker->last.width, maker->last.height };
-	if (!maker->any_shown || maker->attention.state == GZ_ATTENTION_WIDEN)
-		return 0;
-	return object_at(maker, &maker->last.camera, &maker->last.rays, size_px,
-			 maker->focus.point);
+	struct gz_object objects[GZ_SCENE_LISTED_MAX];
+	struct gz_pick_request request;
+	if (!maker->any_shown || maker->attention.state == GZ_ATTENTION_WIDEN ||
+	    !request_pick(maker, &maker->last.camera, &maker->last.rays, size_px,
+			  maker->focus.point, &request))
+		return (struct gz_looked_at) { 0 };
+	return gz_looked_at_find(maker->pictures, objects, list_scene_objects(maker, objects),
+				 &request);
 }
 
 /* Follow what is looked at. */
 static void attend_object(struct gz_frame_maker *maker, const struct gz_attention_params *params,
 			  int64_t time_ns)
 {
-	if (params->importance <= 0)
+	if (params->importance <= 0) {
 		maker->interest = (struct gz_interest) { 0 };
-	else
-		maker->interest =
-			gz_interest_step(maker->interest, params, attended_object(maker), time_ns);
+	} else {
+		const struct gz_looked_at thing = attended_thing(maker);
+		maker->interest = gz_interest_step(maker->interest, params, &thing, time_ns);
+	}
 	maker->raised = gz_interest_raised(&maker->interest, params);
 }
 
@@ -790,9 +813,10 @@ static enum gz_result follow_objects(struct gz_frame_maker *maker,
 	if (!changed && gz_raised_same(&maker->raised, &maker->raised_shown))
 		return GZ_OK;
 	drop_spares(maker);
+	if (raises_values(&maker->raised_shown) || raises_values(&maker->raised))
+		maker->transfer_revision++;
 	maker->raised_shown = maker->raised;
-	if (maker->raised_shown.id != 0)
-		style_raised(maker);
+	style_raised(maker);
 	maker->any_made = maker->any_made && !changed;
 	const size_t count = list_scene_objects(maker, objects);
 	if (count > 0)
@@ -990,7 +1014,18 @@ uint32_t gz_frame_object_at(struct gz_frame_maker *maker, const struct gz_scene_
 			    int width, int height, struct gz_point point)
 {
 	const int size_px[2] = { width, height };
-	return object_at(maker, &settings->camera, &settings->rays, size_px, point);
+	struct gz_pick_request request;
+	struct gz_pick pick;
+	if (!request_pick(maker, &settings->camera, &settings->rays, size_px, point, &request) ||
+	    gz_picture_maker_pick(maker->pictures, &request, &pick) != GZ_OK)
+		return 0;
+	return gz_pick_most_seen(&pick);
+}
+
+const struct gz_transfer *gz_frame_transfer(const struct gz_frame_maker *maker)
+{
+	return raises_values(&maker->raised_shown) ? &maker->raised_transfer
+						   : &maker->scene.transfer;
 }
 
 enum gz_result gz_frame_print(struct gz_frame_maker *maker, const struct gz_frame_request *request,

@@ -169,11 +169,15 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
 void gz_frame_set_focus(struct gz_frame_maker *maker, const struct gz_gaze_reading *reading,
 			const struct gz_focus *focus);
 
-/** Raise an object in importance from the next frame on, as it was recorded. gz_frame_attend()
- *  decides anew. */
+/** Raise an object, or values of a volume, in importance from the next frame on, as it was
+ * recorded. gz_frame_attend() decides anew. */
 void gz_frame_set_raised(struct gz_frame_maker *maker, const struct gz_raised *raised);
 
-/** The object that the next frame raises in importance because it is looked at. */
+/** The transfer function that the last frame showed: the scene's, and what is raised of its values.
+ *  Valid until the next frame. */
+const struct gz_transfer *gz_frame_transfer(const struct gz_frame_maker *maker);
+
+/** What the next frame raises in importance because it is looked at. */
 struct gz_raised gz_frame_raised(const struct gz_frame_maker *maker);
 
 /** The reading last passed to gz_frame_attend() or gz_frame_set_focus(). */

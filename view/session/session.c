@@ -217,19 +217,27 @@ static void take_display(struct fields *fields, struct gz_display *display)
 
 void gz_session_print_raised(const struct gz_raised *raised, struct gz_text *text)
 {
-	gz_text_add(text, GZ_SESSION_RAISE_WORD "\t%" PRIu32 "\t%.17g\n", raised->id,
-		    raised->share);
+	gz_text_add(text, GZ_SESSION_RAISE_WORD "\t%" PRIu32 "\t%.17g", raised->id, raised->share);
+	if (raised->least != raised->greatest)
+		gz_text_add(text, "\t%.17g\t%.17g", raised->least, raised->greatest);
+	gz_text_add(text, "\n");
 }
 
 enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised)
 {
-	char *fields[3];
+	char *fields[5];
 	long long id;
-	double share;
-	if (split_fields(line, fields, 3) != 3 || !read_int(fields[1], 0, UINT32_MAX, &id) ||
-	    !gz_number_parse(fields[2], &share) || !(share >= 0 && share <= 1))
+	struct gz_raised raised = { 0 };
+	const size_t count = split_fields(line, fields, 5);
+	if ((count != 3 && count != 5) || !read_int(fields[1], 0, UINT32_MAX, &id) ||
+	    !gz_number_parse(fields[2], &raised.share) || !(raised.share >= 0 && raised.share <= 1))
 		return GZ_ERR_FORMAT;
-	*out_raised = (struct gz_raised) { (uint32_t)id, share };
+	raised.id = (uint32_t)id;
+	if (count == 5 &&
+	    (!gz_number_parse(fields[3], &raised.least) ||
+	     !gz_number_parse(fields[4], &raised.greatest) || !(raised.least < raised.greatest)))
+		return GZ_ERR_FORMAT;
+	*out_raised = raised;
 	return GZ_OK;
 }
 

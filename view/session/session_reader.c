@@ -258,7 +258,7 @@ static enum gz_result parse_raise_line(struct gz_session_reader *reader,
 	if (gz_session_parse_raised(reader->scratch, &state->raised) == GZ_OK)
 		return GZ_OK;
 	return refuse_session_line(reader, GZ_SESSION_RAISE_WORD
-				   ": not an object and a share; the file is damaged");
+				   ": not an object, a share and a range; the file is damaged");
 }
 
 static enum gz_result parse_frame_line(struct gz_session_reader *reader,

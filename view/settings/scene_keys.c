@@ -95,6 +95,12 @@ static bool by_surface(const struct gz_scene_settings *settings)
 	return by_isosurface(settings) || by_illustrate(settings);
 }
 
+/* What is looked at can stand out. */
+static bool with_importance(const struct gz_scene_settings *settings)
+{
+	return by_illustrate(settings) || by_raycast(settings);
+}
+
 static bool by_combined(const struct gz_scene_settings *settings)
 {
 	return by_illustrate(settings) &&
@@ -293,7 +299,7 @@ static const struct {
 	{ "foveation.blend_px", with_borders },
 	{ "foveation.step_floor", by_distance },
 	{ "attention.budget_ms", with_a_scale },
-	{ "attention.importance", by_illustrate },
+	{ "attention.importance", with_importance },
 	{ "attention.", with_the_gaze },
 	{ "temporal.weight", with_the_past },
 	{ "view.split", with_a_split },

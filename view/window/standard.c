@@ -44,6 +44,6 @@ void gz_window_ask_for_standard(const struct gz_window *window, struct gz_refere
 	const size_t count = gz_frame_list_objects(window->maker, objects);
 	/* Without memory the picture shows them as they were. */
 	(void)gz_reference_worker_set_objects(worker, objects, count);
-	gz_reference_worker_set_transfer(worker, &gz_frame_maker_scene(window->maker)->transfer);
+	gz_reference_worker_set_transfer(worker, gz_frame_transfer(window->maker));
 	gz_reference_worker_ask(worker, &view);
 }
