@@ -34,6 +34,8 @@ const struct gz_option gz_illustration_look_options[] = {
 	  .preset = "",
 	  .help = "template that replaces combined settings: a name, or a file beside the scene or "
 		  "under $GAZECAST_DATA" },
+	{ "illustration.automatic", GZ_OPTION_BOOL, AT(automatic), .preset = "no",
+	  .help = "let the combined settings follow what each view shows, a little" },
 	{ "illustration.chosen_object", GZ_OPTION_STRING, AT(chosen_object), .max = GZ_NAME_SIZE,
 	  .preset = "", .help = "name of the object or label from which distances count" },
 };

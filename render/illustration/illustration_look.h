@@ -36,10 +36,11 @@ enum gz_illustration_drawing {
 
 /** Sections [illustration] and [shading_map] of a scene. */
 struct gz_illustration_look {
-	int source;                       /**< enum gz_illustration_source */
-	int show;                         /**< enum gz_illustration_show, or a parameter */
-	int drawing;                      /**< enum gz_illustration_drawing */
-	double pen_width;                 /**< width of strokes, diameter of points, px */
+	int source;       /**< enum gz_illustration_source */
+	int show;         /**< enum gz_illustration_show, or a parameter */
+	int drawing;      /**< enum gz_illustration_drawing */
+	bool automatic;   /**< combined settings follow what is seen: illustration_automatic.h */
+	double pen_width; /**< width of strokes, diameter of points, px */
 	char chosen_object[GZ_NAME_SIZE]; /**< from which distances count; empty: none */
 	char template_name[GZ_PATH_SIZE]; /**< gz_shading_template_named(), or a file; empty: none
 					   */

@@ -24,6 +24,7 @@
 #include "render/transfer/transfer.h"
 
 struct gz_gl_context;
+struct gz_shading_measures;
 
 /** Kinds of data that an object can have, as bits. */
 enum gz_object_data {
@@ -93,6 +94,9 @@ struct gz_frame_stats {
 	double reconstruct_ms;
 	double gpu_ms; /**< gl: cast and reconstruction by the device's clock; NaN if the device has
 			    no clock or is a processor */
+	/** What an illustration with illustration.automatic is like, valid until the next picture;
+	 *  NULL: not measured. */
+	const struct gz_shading_measures *measures;
 	uint64_t bricks_coming; /**< bricks that were requested and are not loaded yet. While it is
 				     above 0, the same picture made again is sharper */
 };

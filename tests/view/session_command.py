@@ -4,6 +4,7 @@ session_command.py GAZEVIEW SCENES-FOLDER
 """
 
 import json
+import math
 import os
 import re
 import shutil
@@ -119,6 +120,56 @@ class Session(unittest.TestCase):
             plain, shown = (read_png(self.path("v%d-%d.png" % (i, k))) for i in (0, 1))
             self.assertGreater(sum(shown.at(*more)), sum(plain.at(*more)))
             self.assertLess(sum(shown.at(*less)), 0.9 * sum(plain.at(*less)))
+
+    def write_plate(self):
+        """A plate with bumps that are a hundredth as high as it is wide, seen from above."""
+        side = 60
+        with open(self.path("plate.obj"), "w", encoding="utf-8") as out:
+            for i in range(side * side):
+                x, y = i % side, i // side
+                out.write("v %g %g %g\n" % (x, y, 0.6 * math.sin(x / 2) * math.sin(y / 3)))
+            for i in range((side - 1) * (side - 1)):
+                at = i // (side - 1) * side + i % (side - 1) + 1
+                out.write("f %d %d %d\nf %d %d %d\n" % (
+                    at, at + 1, at + side + 1, at, at + side + 1, at + side))
+        path = self.path("plate.scene")
+        with open(path, "w", encoding="utf-8") as out:
+            out.write("[object plate]\nmesh = plate.obj\ntechnique = illustrate\n"
+                      "[camera]\neye = 0 0 2\nlook_at = 0 0 0\nup = 0 1 0\nfov_deg = 40\n")
+        return path
+
+    def contrast(self, picture):
+        """Standard deviation of the plate's middle, in shares of white."""
+        values = picture.part(40, 30, 120, 90)[::3]
+        mean = sum(values) / len(values)
+        return math.sqrt(sum((value - mean) ** 2 for value in values) / len(values)) / 255
+
+    def test_automatic_settings_move_slowly_settle_and_replay_bit_for_bit(self):
+        scene = self.write_plate()
+        for name in ("first", "second"):
+            self.good(scene, "--size", "160x120", "--frames", 60, "--fps", 20,
+                      "--illustration.automatic", "--record", self.path(name + ".session"),
+                      "--out", self.path(name + "-%d.png"))
+        with open(self.path("first.session/frames.tsv"), encoding="utf-8") as source:
+            changes = [[float(part) for part in line.split("\t")[1:]] for line in source
+                       if line.startswith("!adapt")]
+        self.assertTrue(10 < len(changes) < 59, "it does not settle: %d changes" % len(changes))
+        before = [0] * 5
+        for now in changes:  # half of a setting's range a second, of which a frame is 1/20
+            self.assertTrue(all(abs(a - b) <= 0.5 / 20 + 1e-9 for a, b in zip(now, before)), now)
+            before = now
+        pictures = [read_png(self.path("first-%d.png" % k)) for k in range(60)]
+        self.assertEqual(pictures[59], pictures[58])
+        for one, other in zip(pictures, pictures[1:]):
+            step = [abs(a - b) for a, b in zip(one.part(40, 30, 120, 90)[::3],
+                                               other.part(40, 30, 120, 90)[::3])]
+            self.assertTrue(sum(step) / len(step) < 12, "a jump of %g" % (sum(step) / len(step)))
+        self.assertGreater(self.contrast(pictures[59]), 1.15 * self.contrast(pictures[0]))
+        self.good("--replay", self.path("first.session"), "--out", self.path("is-%d.png"))
+        for k in range(60):
+            was = self.read("first-%d.png" % k)
+            self.assertTrue(was == self.read("second-%d.png" % k), "run %d is another" % k)
+            self.assertTrue(was == self.read("is-%d.png" % k), "picture %d is another" % k)
 
     def record_looks(self, importance):
         """Two regions side by side, in which the gaze rests on one, then on the other."""

@@ -189,6 +189,27 @@ static void what_is_raised_is_read_back_to_the_bit(void **state)
 	}
 }
 
+static void changes_of_settings_are_read_back_to_the_bit(void **state)
+{
+	(void)state;
+	const struct gz_illustration_change change = { 1.0 / 3, -0.4, 1e-17, 0, 0.4 };
+	static const char *const wrong[] = { "!adapt\t0\t0\t0\t0", "!adapt\t0\t0\t0\t0\t0\t0",
+					     "!adapt\t0\t0\t0\t0\t0.41",
+					     "!adapt\t0\tnan\t0\t0\t0" };
+	struct gz_illustration_change back;
+	struct gz_text text = { 0 };
+	char line[64];
+	gz_session_print_change(&change, &text);
+	text.bytes[text.length - 1] = '\0';
+	assert_int_equal(gz_session_parse_change(text.bytes, &back), GZ_OK);
+	assert_true(gz_illustration_change_same(&change, &back));
+	gz_text_free(&text);
+	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+		snprintf(line, sizeof line, "%s", wrong[i]);
+		assert_int_equal(gz_session_parse_change(line, &back), GZ_ERR_FORMAT);
+	}
+}
+
 static void frame_is_read_back_to_the_bit(void **state)
 {
 	struct gz_session_frame frame = make_frame(*state, 123456789012345);
@@ -542,6 +563,7 @@ TEST_SUITE(session)
 	const struct CMUnitTest tests[] = {
 		TEST(frame_is_read_back_to_the_bit),
 		TEST(what_is_raised_is_read_back_to_the_bit),
+		TEST(changes_of_settings_are_read_back_to_the_bit),
 		TEST(session_is_read_back_with_its_changes),
 		TEST(scene_file_has_the_settings_of_the_start),
 		TEST(spacing_tables_are_copied),

@@ -89,7 +89,7 @@ enum gz_result gz_comparison_join(struct gz_comparison *comparison,
 	const struct gz_scene_settings *settings = request->settings;
 	const struct gz_reference_view view = {
 		.camera = settings->camera,
-		.rays = settings->rays,
+		.rays = *gz_frame_rays(comparison->maker),
 		.image_sampling_rate = settings->image_sampling_rate,
 		.width = request->width,
 		.height = request->height,

@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "render/data/time_steps.h"
 #include "render/frame/picture_maker.h"
+#include "render/illustration/illustration_automatic.h"
 #include "render/plan/method.h"
 #include "render/scene/scene_open.h"
 #include "render/scene/techniques.h"
@@ -62,7 +63,13 @@ struct gz_frame_maker {
 	struct gz_raised raised;        /* for the next frame */
 	struct gz_raised raised_shown;  /* by the renderer */
 	struct gz_object_style raised_style;
-	struct gz_transfer raised_transfer; /* with what is raised of its values */
+	struct gz_transfer raised_transfer;         /* with what is raised of its values */
+	struct gz_illustration_automatic automatic; /* which its settings follow */
+	bool change_given;                   /* by gz_frame_set_change(), for the next frame */
+	struct gz_shading_measures measures; /* of the last frame */
+	bool measured;
+	int64_t time_ns;           /* of the newest gz_frame_attend() */
+	struct gz_ray_params rays; /* of the frame in the making */
 	struct {
 		struct gz_camera camera;
 		struct gz_ray_params rays;
@@ -563,8 +570,25 @@ bool gz_frame_attend(struct gz_frame_maker *maker, const struct gz_attention_par
 	maker->reading = *reading;
 	maker->focus = gz_attention_step(&maker->attention, &gaze, display, time_ns);
 	attend_object(maker, params, time_ns);
+	maker->time_ns = time_ns;
 	return !maker->any_made || !gz_focus_same(&maker->focus, &maker->made) ||
-	       !gz_raised_same(&maker->raised, &maker->raised_shown);
+	       !gz_raised_same(&maker->raised, &maker->raised_shown) || maker->automatic.moving;
+}
+
+void gz_frame_set_change(struct gz_frame_maker *maker, const struct gz_illustration_change *change)
+{
+	maker->automatic = (struct gz_illustration_automatic) { .change = *change };
+	maker->change_given = true;
+}
+
+struct gz_illustration_change gz_frame_change(const struct gz_frame_maker *maker)
+{
+	return maker->automatic.change;
+}
+
+const struct gz_ray_params *gz_frame_rays(const struct gz_frame_maker *maker)
+{
+	return &maker->last.rays;
 }
 
 void gz_frame_set_raised(struct gz_frame_maker *maker, const struct gz_raised *raised)
@@ -612,7 +636,8 @@ void gz_frame_forget(struct gz_frame_maker *maker)
 
 bool gz_frame_settled(const struct gz_frame_maker *maker)
 {
-	return gz_attention_settled(&maker->attention) && gz_interest_at_rest(&maker->interest);
+	return gz_attention_settled(&maker->attention) && gz_interest_at_rest(&maker->interest) &&
+	       !maker->automatic.moving;
 }
 
 bool gz_frame_refinable(const struct gz_frame_maker *maker)
@@ -846,13 +871,27 @@ static enum gz_result follow_technique(struct gz_frame_maker *maker, int techniq
 	return show_scene_objects(maker);
 }
 
+/* Let the settings of an illustration follow the last frame, if they do that. */
+static void follow_measures(struct gz_frame_maker *maker, const struct gz_frame_request *request)
+{
+	const struct gz_ray_params *rays = &request->settings->rays;
+	if (!maker->change_given)
+		maker->automatic = gz_illustration_automatic_step(
+			maker->automatic, &rays->illustration,
+			maker->measured ? &maker->measures : NULL, maker->time_ns);
+	maker->change_given = false;
+	maker->rays = *rays;
+	gz_illustration_adapt(&maker->automatic.change, &maker->rays.illustration);
+}
+
+/* A request for the picture of a frame; after follow_measures(). */
 static struct gz_picture_request picture_of_frame(const struct gz_frame_maker *maker,
 						  const struct gz_frame_request *request)
 {
 	const struct gz_scene_settings *settings = request->settings;
 	return (struct gz_picture_request) {
 		.camera = &settings->camera,
-		.settings = &settings->rays,
+		.settings = &maker->rays,
 		.foveation = &settings->foveation,
 		.display = request->display,
 		.focus = maker->focus,
@@ -870,6 +909,7 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 					 struct gz_image **out_image,
 					 struct gz_frame_record *record)
 {
+	follow_measures(maker, request);
 	const struct gz_picture_request picture = picture_of_frame(maker, request);
 	struct gz_picture_cost cost;
 	enum gz_result r = follow_objects(maker, request->settings);
@@ -879,6 +919,9 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 		r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
 	if (r != GZ_OK)
 		return r;
+	maker->measured = cost.stats.measures != NULL;
+	if (maker->measured)
+		maker->measures = *cost.stats.measures;
 	record->total_ms = cost.total_ms;
 	record->prepare_ms = cost.stats.prepare_within_ms;
 	record->plan_ms = cost.plan_ms;
@@ -977,7 +1020,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	maker->made = maker->focus;
 	maker->any_made = maker->any_shown = true;
 	maker->last.camera = request->settings->camera;
-	maker->last.rays = request->settings->rays;
+	maker->last.rays = maker->rays;
 	maker->last.width = request->width;
 	maker->last.height = request->height;
 	tell_spent(maker, request, record.total_ms - record.prepare_ms);
@@ -1031,6 +1074,8 @@ const struct gz_transfer *gz_frame_transfer(const struct gz_frame_maker *maker)
 enum gz_result gz_frame_print(struct gz_frame_maker *maker, const struct gz_frame_request *request,
 			      const struct gz_print *print)
 {
+	maker->rays = request->settings->rays;
+	gz_illustration_adapt(&maker->automatic.change, &maker->rays.illustration);
 	const struct gz_picture_request picture = picture_of_frame(maker, request);
 	enum gz_result r = follow_objects(maker, request->settings);
 	if (r == GZ_OK)

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "render/attention/interest.h"
+#include "render/illustration/illustration_automatic.h"
 #include "render/picture/image.h"
 #include "render/scene/scene.h"
 #include "render/technique/technique.h"
@@ -179,6 +180,17 @@ const struct gz_transfer *gz_frame_transfer(const struct gz_frame_maker *maker);
 
 /** What the next frame raises in importance because it is looked at. */
 struct gz_raised gz_frame_raised(const struct gz_frame_maker *maker);
+
+/** Change the combined settings of an illustration in the next frame as it was recorded, in place
+ * of what follows from the last frame (render/illustration/illustration_automatic.h). */
+void gz_frame_set_change(struct gz_frame_maker *maker, const struct gz_illustration_change *change);
+
+/** How the last frame's settings of an illustration were changed. */
+struct gz_illustration_change gz_frame_change(const struct gz_frame_maker *maker);
+
+/** The settings that the last frame was made with: the scene's, and what followed what it showed.
+ *  Valid until the next frame; undefined before the first. */
+const struct gz_ray_params *gz_frame_rays(const struct gz_frame_maker *maker);
 
 /** The reading last passed to gz_frame_attend() or gz_frame_set_focus(). */
 const struct gz_gaze_reading *gz_frame_reading(const struct gz_frame_maker *maker);

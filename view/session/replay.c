@@ -146,6 +146,7 @@ enum gz_result gz_replay_ready(struct gz_replay *replay)
 		gz_frame_forget(replay->maker);
 	gz_frame_set_focus(replay->maker, &replay->frame.reading, &replay->frame.focus);
 	gz_frame_set_raised(replay->maker, &replay->frame.raised);
+	gz_frame_set_change(replay->maker, &replay->frame.change);
 	return r;
 }
 

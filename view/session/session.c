@@ -241,6 +241,29 @@ enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised)
 	return GZ_OK;
 }
 
+void gz_session_print_change(const struct gz_illustration_change *change, struct gz_text *text)
+{
+	gz_text_add(text, GZ_SESSION_ADAPT_WORD "\t%.17g\t%.17g\t%.17g\t%.17g\t%.17g\n",
+		    change->edge_emphasis, change->detail_amplitude, change->detail_frequency,
+		    change->spatial_effect, change->foreground);
+}
+
+enum gz_result gz_session_parse_change(char *line, struct gz_illustration_change *out_change)
+{
+	char *fields[6];
+	struct gz_illustration_change change;
+	if (split_fields(line, fields, 6) != 6 ||
+	    !gz_number_parse(fields[1], &change.edge_emphasis) ||
+	    !gz_number_parse(fields[2], &change.detail_amplitude) ||
+	    !gz_number_parse(fields[3], &change.detail_frequency) ||
+	    !gz_number_parse(fields[4], &change.spatial_effect) ||
+	    !gz_number_parse(fields[5], &change.foreground) ||
+	    !gz_illustration_change_valid(&change))
+		return GZ_ERR_FORMAT;
+	*out_change = change;
+	return GZ_OK;
+}
+
 enum gz_result gz_session_parse_frame(char *line, struct gz_session_frame *out_frame,
 				      const char **out_what)
 {

@@ -22,6 +22,7 @@
 #include "protocol/gaze.h"
 #include "render/attention/interest.h"
 #include "render/data/volume.h"
+#include "render/illustration/illustration_automatic.h"
 #include "view/gaze/gaze_source.h"
 
 #define GZ_SESSION_ENDING   ".session"
@@ -41,6 +42,7 @@
 #define GZ_SESSION_SET_WORD      "!set"
 #define GZ_SESSION_TRANSFER_WORD "!transfer"
 #define GZ_SESSION_RAISE_WORD    "!raise"
+#define GZ_SESSION_ADAPT_WORD    "!adapt"
 
 /** What all frames of a session share. */
 struct gz_session_header {
@@ -61,6 +63,8 @@ struct gz_session_frame {
 	struct gz_focus focus; /**< the plan was made for it */
 	/** What was raised in importance, which is stored in a line of its own. */
 	struct gz_raised raised;
+	/** How an illustration's settings followed what was seen; in a line of its own, too. */
+	struct gz_illustration_change change;
 	bool kept;      /**< earlier frames contributed: temporal.accumulate */
 	double took_ms; /**< for statistics */
 };
@@ -78,6 +82,17 @@ void gz_session_print_raised(const struct gz_raised *raised, struct gz_text *tex
  * @retval GZ_ERR_FORMAT  not a number of an object and a share
  */
 enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised);
+
+/** Append the line that says how settings of an illustration are changed from the next frame on. */
+void gz_session_print_change(const struct gz_illustration_change *change, struct gz_text *text);
+
+/**
+ * Parse that line.
+ *
+ * @param[in,out] line  without its newline, NUL-terminated; it is changed
+ * @retval GZ_ERR_FORMAT  not five numbers within their limits
+ */
+enum gz_result gz_session_parse_change(char *line, struct gz_illustration_change *out_change);
 
 /** Append the line of a frame with its newline. */
 void gz_session_print_frame(const struct gz_session_frame *frame, struct gz_text *text);

@@ -33,7 +33,8 @@ struct gz_session_writer {
 	struct gz_scene_settings settings; /* of the last frame in the file */
 	struct gz_transfer transfer;
 	struct gz_raised raised; /* as of the last frame */
-	bool gaze_known;         /* gaze_ns is valid */
+	struct gz_illustration_change change;
+	bool gaze_known; /* gaze_ns is valid */
 	int64_t gaze_ns;
 	uint64_t gaze_samples;
 	struct gz_gaze_log_writer gaze;
@@ -346,6 +347,9 @@ enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 	if (!gz_raised_same(&writer->raised, &frame->raised))
 		gz_session_print_raised(&frame->raised, &writer->lines);
 	writer->raised = frame->raised;
+	if (!gz_illustration_change_same(&writer->change, &frame->change))
+		gz_session_print_change(&frame->change, &writer->lines);
+	writer->change = frame->change;
 	gz_session_print_frame(frame, &writer->lines);
 	const enum gz_result flushed = flush(writer);
 	writer->frames += flushed == GZ_OK;
@@ -455,6 +459,7 @@ enum gz_result gz_recording_add(struct gz_session_writer *writer,
 		.reading = *gz_frame_reading(maker),
 		.focus = record->focus,
 		.raised = gz_frame_raised(maker),
+		.change = gz_frame_change(maker),
 		.kept = record->kept,
 		.took_ms = record->total_ms,
 	};

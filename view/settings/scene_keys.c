@@ -270,6 +270,7 @@ static const struct {
 	{ "illustration.show", by_illustrate },
 	{ "illustration.settings", by_illustrate },
 	{ "illustration.chosen_object", by_illustrate },
+	{ "illustration.automatic", by_combined },
 	{ "illustration.edge_emphasis", keeps_edge_emphasis },
 	{ "illustration.detail_amplitude", keeps_detail_amplitude },
 	{ "illustration.detail_frequency", keeps_detail_frequency },

@@ -35,7 +35,7 @@ void gz_window_ask_for_standard(const struct gz_window *window, struct gz_refere
 {
 	const struct gz_reference_view view = {
 		.camera = window->made.camera,
-		.rays = window->made.rays,
+		.rays = *gz_frame_rays(window->maker),
 		.image_sampling_rate = window->made.image_sampling_rate,
 		.width = width,
 		.height = height,

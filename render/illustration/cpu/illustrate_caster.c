@@ -253,6 +253,7 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 			.cast_ms = gz_ns_to_ms(cast_ns - prepared_ns),
 			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
 			.gpu_ms = NAN,
+			.measures = gz_illustrate_picture_measures(&caster->picture),
 		};
 	return result;
 }

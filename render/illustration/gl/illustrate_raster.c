@@ -416,6 +416,7 @@ static enum gz_result draw_illustrated_frame(struct illustrate_rastering *raster
 		return result;
 	const double prepare_ms = new_meshes ? gz_ns_to_ms(uploaded_ns - start_ns) : 0;
 	*out_stats = (struct gz_frame_stats) {
+		.measures = gz_illustrate_picture_measures(&raster->picture),
 		.rays = points_drawn(&raster->points),
 		.prepare_ms = prepare_ms,
 		.prepare_within_ms = prepare_ms,

@@ -15,6 +15,12 @@ enum gz_result gz_illustrate_picture_open(struct gz_illustrate_picture *picture)
 	return gz_shading_picture_create(&picture->shading);
 }
 
+const struct gz_shading_measures *gz_illustrate_picture_measures(
+	const struct gz_illustrate_picture *picture)
+{
+	return picture->measured ? &picture->measures : NULL;
+}
+
 void gz_illustrate_picture_close(struct gz_illustrate_picture *picture)
 {
 	gz_shading_picture_destroy(&picture->shading);
@@ -50,6 +56,8 @@ enum gz_result gz_illustrate_picture_prepare(struct gz_illustrate_picture *pictu
 {
 	const struct gz_plan *plan = shot->plan;
 	enum gz_result result = GZ_OK;
+	picture->measured = shot->look->automatic && shot->look->show == GZ_SHOW_SHADING;
+	picture->measures = (struct gz_shading_measures) { 0 };
 	picture->layers = scene->transparent ? GZ_ILLUSTRATE_LAYERS_MAX : 1;
 	picture->plane_count = gz_illustrate_shot_measured(shot) > 0 ? GZ_ILLUSTRATE_FOUND
 								     : GZ_ILLUSTRATE_DISTANCE;
@@ -83,7 +91,7 @@ static bool is_drawn(const struct gz_illustrate_picture *picture)
 static enum gz_result compose_layer(const struct illustrate_composing *composing, int layer,
 				    uint32_t *out_pixels, const float **out_map)
 {
-	const struct gz_illustrate_picture *picture = composing->picture;
+	struct gz_illustrate_picture *picture = composing->picture;
 	const struct gz_plane *planes = picture->planes[layer];
 	const struct gz_shading_frame frame = {
 		.width = planes[GZ_ILLUSTRATE_IDS].width,
@@ -102,6 +110,8 @@ static enum gz_result compose_layer(const struct illustrate_composing *composing
 		.keeps_curve = layer > 0,
 		.lines_apart = is_drawn(picture) ? picture->drawing.layer_lines : NULL,
 	};
+	if (picture->measured && layer == 0)
+		gz_shading_measure(&frame, &picture->measures);
 	return gz_shading_picture_compose(picture->shading, &frame, &composing->frame->settings,
 					  composing->workers, out_pixels, out_map);
 }

@@ -10,6 +10,7 @@
 
 #include "base/result.h"
 #include "base/workers.h"
+#include "render/illustration/shading_measures.h"
 #include "render/illustration/shading_picture.h"
 #include "render/illustration/shared/illustrate_drawing.h"
 #include "render/illustration/shared/illustrate_frame.h"
@@ -37,6 +38,8 @@ struct gz_illustrate_picture {
 	int layers;      /**< 1 to GZ_ILLUSTRATE_LAYERS_MAX; 1: no object is transparent */
 	int plane_count; /**< GZ_ILLUSTRATE_FOUND, or one less without distances */
 	struct gz_illustrate_drawing drawing; /**< by marks, if the look asks for it */
+	bool measured;                        /**< the look asks for measures */
+	struct gz_shading_measures measures;  /**< of the nearest layer, if measured */
 	/** Within shared/: */
 	struct gz_shading_picture *shading;
 	float *sums, *shares; /**< of the layers before one: their map, and what they let through */
@@ -66,6 +69,10 @@ enum gz_result gz_illustrate_picture_compose(struct gz_illustrate_picture *pictu
 					     const struct gz_illustrate_frame *frame,
 					     struct gz_workers *workers, struct gz_image *image,
 					     const struct gz_illustrate_planes *planes);
+
+/** What the composed picture is like; NULL: its look asks for no measures. */
+const struct gz_shading_measures *gz_illustrate_picture_measures(
+	const struct gz_illustrate_picture *picture);
 
 /** Free all and zero it. */
 void gz_illustrate_picture_close(struct gz_illustrate_picture *picture);
