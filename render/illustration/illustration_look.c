@@ -81,6 +81,12 @@ enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illust
 					     : GZ_DRAWING_GREY;
 }
 
+void gz_illustration_look_show_plain(struct gz_illustration_look *look)
+{
+	look->show = GZ_SHOW_PLAIN;
+	look->drawing = GZ_DRAWING_GREY;
+}
+
 #define WEIGHT(field) offsetof(struct gz_shading_settings, field)
 
 /* The weight of what is shown alone, and the brightness that the parameter changes: light is added

@@ -76,6 +76,9 @@ bool gz_illustration_look_valid(const struct gz_illustration_look *look);
 bool gz_illustration_look_same(const struct gz_illustration_look *a,
 			       const struct gz_illustration_look *b);
 
+/** Show surfaces under a plain lamp, as grey, whatever the look says. */
+void gz_illustration_look_show_plain(struct gz_illustration_look *look);
+
 /**
  * The single settings of an object: what the look's settings make. Templates replace combined
  * settings, that of the look first, then the object's. If one parameter is shown, it is alone over

@@ -14,6 +14,8 @@ const char *const gz_view_overlay_names[] = { "none", "spacing", "step", NULL };
 
 const char *const gz_view_compare_names[] = { "none", "split", "difference", NULL };
 
+const char *const gz_view_compare_with_names[] = { "standard", "plain", NULL };
+
 const char *const gz_view_layout_names[] = { "picture", "slices", NULL };
 
 const char *const gz_view_follows_names[] = { "none", "mouse", "gaze", NULL };
@@ -48,6 +50,10 @@ const struct gz_option gz_view_setting_options[] = {
 	{ "view.compare", GZ_OPTION_CHOICE, AT(compare), .choices = gz_view_compare_names,
 	  .preset = "none",
 	  .help = "the picture by method standard beside the present one, or their difference" },
+	{ "view.compare_with", GZ_OPTION_CHOICE, AT(compare_with),
+	  .choices = gz_view_compare_with_names, .preset = "standard",
+	  .help = "illustrations: what is beside them, method standard or the surfaces under a "
+		  "plain lamp" },
 	{ "view.split", GZ_OPTION_DOUBLE, AT(split), 0, 1, .preset = "0.5",
 	  .help = "split: where the standard picture begins, as a fraction of the width" },
 	{ "view.difference_gain", GZ_OPTION_DOUBLE, AT(difference_gain), 1, GZ_DIFFERENCE_GAIN_MAX,

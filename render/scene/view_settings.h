@@ -37,6 +37,16 @@ enum gz_view_compare {
 /** "none", "split", "difference"; NULL-terminated. */
 extern const char *const gz_view_compare_names[];
 
+/** What a picture is compared with. */
+enum gz_view_compare_with {
+	GZ_COMPARE_WITH_STANDARD,
+	GZ_COMPARE_WITH_PLAIN, /**< of an illustration: the surfaces under a plain lamp */
+	GZ_COMPARE_WITH_COUNT,
+};
+
+/** "standard", "plain"; NULL-terminated. */
+extern const char *const gz_view_compare_with_names[];
+
 /** What fills a window. */
 enum gz_view_layout {
 	GZ_LAYOUT_PICTURE,
@@ -82,6 +92,7 @@ struct gz_view_settings {
 	char tracker_display[GZ_NAME_SIZE]; /**< monitor of the tracker's gaze, by name or number
 					       from 1; empty: automatic */
 	int compare;                        /**< enum gz_view_compare */
+	int compare_with;                   /**< enum gz_view_compare_with */
 	double split; /**< where the standard picture begins, as a fraction of the width */
 	double difference_gain; /**< factor, 1 to GZ_DIFFERENCE_GAIN_MAX */
 	bool frame_times;       /**< the plot of the frame times */

@@ -129,6 +129,23 @@ class Headless(unittest.TestCase):
             self.skipTest("built without Embree")
         self.compare(*SURFACE, "--backend", "cpu")
 
+    def test_plain_surfaces_are_put_beside_an_illustration(self):
+        scene = write_labels(self.place.name, "[camera]", "eye = 0 -2.5 0.8", "[illustration]",
+                             "drawing = stipples")
+        if "Embree" in self.render(scene=scene).stderr:
+            self.skipTest("built without Embree")
+        shown = ("--technique", "illustrate", "--backend", "cpu", "--method", "standard")
+        for name, more in (("drawn", ()), ("plain", ("--illustration.show", "plain")),
+                           ("both", ("--view.compare", "split", "--view.compare_with", "plain"))):
+            self.good(*shown, *more, "--out", self.path(name + ".png"), scene=scene)
+        drawn, plain, both = (read_png(self.path(name + ".png"))
+                              for name in ("drawn", "plain", "both"))
+        middle, width, height = both.width // 2, both.width, both.height
+        self.assertTrue(both.part(0, 0, middle, height) == drawn.part(0, 0, middle, height))
+        self.assertTrue(both.part(middle, 0, width, height) ==
+                        plain.part(middle, 0, width, height))
+        self.assertFalse(plain == drawn)
+
     def compare(self, *how):
         coarse = (*how, "--gaze", "0.3,0.5", "--foveation.acuity_slope", "0.1")
         for name, more in (("sharp", ("--method", "standard")), ("foveated", ()),

@@ -217,6 +217,53 @@ class WindowCase(unittest.TestCase):
     def move(self, x, y):
         self.tool("mousemove", "--window", self.window, x, y)
 
+    def click(self, x, y, button=1):
+        """A click that lasts until a frame has seen it."""
+        self.move(x, y)
+        self.until_idle()
+        self.tool("mousedown", button)
+        self.until_idle()
+        self.tool("mouseup", button)
+        self.until_idle()
+
+    def drag(self, start, end, button=1, key=None):
+        """A drag from one place to another, in two moves."""
+        self.move(*start)
+        self.until_idle()
+        if key:
+            self.tool("keydown", key)
+        self.tool("mousedown", button)
+        self.until_idle()
+        for share in (0.5, 1):
+            self.move(*(round(a + share * (b - a)) for a, b in zip(start, end)))
+            self.until_idle()
+        self.tool("mouseup", button)
+        if key:
+            self.tool("keyup", key)
+        self.until_idle()
+
+    def find(self, words):
+        """Search for words, by the keyboard."""
+        self.press("ctrl+p")
+        self.tool("type", "--delay", "30", words)
+        self.until_idle()
+
+    def saved(self):
+        """The lines of the scene self.own, after the window has saved it."""
+        before = os.stat(self.own).st_mtime_ns
+        self.press("ctrl+s")
+        self.wait_for(lambda: os.stat(self.own).st_mtime_ns != before, "a saved scene")
+        with open(self.own, encoding="utf-8") as own:
+            return own.read().splitlines()
+
+    def amber_letters_left(self, picture):
+        pixels = (picture.at(x, y) for x in range(10, 100) for y in range(60, 250))
+        return sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
+
+    def title(self):
+        self.until_idle()
+        return self.tool("getwindowname", self.window).strip()
+
     def cross_at(self, picture, x, y):
         """Whether a red upright cross has its middle there, to a pixel or two."""
         arms = ((0, 0), (8, 0), (-8, 0), (0, 8), (0, -8))

@@ -26,29 +26,6 @@ class Menus(WindowCase):
         self.addCleanup(lambda: os.path.exists(self.own) and os.unlink(self.own))
         return self.start("--gaze", "mouse", "--method", "acuity", *more, scene=self.own)
 
-    def saved(self):
-        """The lines of the scene, after the window has saved it."""
-        before = os.stat(self.own).st_mtime_ns
-        self.press("ctrl+s")
-        self.wait_for(lambda: os.stat(self.own).st_mtime_ns != before, "a saved scene")
-        with open(self.own, encoding="utf-8") as own:
-            return own.read().splitlines()
-
-    def click(self, x, y, button=1):
-        """A click that lasts until a frame has seen it."""
-        self.move(x, y)
-        self.until_idle()
-        self.tool("mousedown", button)
-        self.until_idle()
-        self.tool("mouseup", button)
-        self.until_idle()
-
-    def find(self, words):
-        """Search for words, by the keyboard."""
-        self.press("ctrl+p")
-        self.tool("type", "--delay", "30", words)
-        self.until_idle()
-
     def amber_letters(self, picture):
         pixels = (picture.at(x, y) for x in range(100, SIZE[0] - 10) for y in range(20, 250))
         return sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
@@ -175,26 +152,6 @@ class Menus(WindowCase):
     def is_blue(self, pixel):
         return pixel[2] > pixel[0] + 60
 
-    def amber_letters_left(self, picture):
-        pixels = (picture.at(x, y) for x in range(10, 100) for y in range(60, 250))
-        return sum(r > 160 and 0.6 * r < g < 0.85 * r and b < 0.5 * r for r, g, b in pixels)
-
-    def drag(self, start, end, button=1, key=None):
-        """A drag from one place to another, in two moves."""
-        self.move(*start)
-        self.until_idle()
-        if key:
-            self.tool("keydown", key)
-        self.tool("mousedown", button)
-        self.until_idle()
-        for share in (0.5, 1):
-            self.move(*(round(a + share * (b - a)) for a, b in zip(start, end)))
-            self.until_idle()
-        self.tool("mouseup", button)
-        if key:
-            self.tool("keyup", key)
-        self.until_idle()
-
     def crosses(self, picture):
         """Columns of the axial slice's and of the coronal slice's crosshair."""
         def columns(left, right, top, bottom):
@@ -306,10 +263,6 @@ class Menus(WindowCase):
     def is_picture(self, picture, y):
         """Whether the small picture of the first recent file has blue shells in this row."""
         return any(b > r + 30 and b > 60 for r, g, b in (picture.at(x, y) for x in range(20, 90)))
-
-    def title(self):
-        self.until_idle()
-        return self.tool("getwindowname", self.window).strip()
 
     def press_last(self, key):
         """Press the key that ends the program."""

@@ -87,13 +87,15 @@ enum gz_result gz_comparison_join(struct gz_comparison *comparison,
 				  const struct gz_frame_request *request, struct gz_image *image)
 {
 	const struct gz_scene_settings *settings = request->settings;
-	const struct gz_reference_view view = {
+	struct gz_reference_view view = {
 		.camera = settings->camera,
 		.rays = *gz_frame_rays(comparison->maker),
 		.image_sampling_rate = settings->image_sampling_rate,
 		.width = request->width,
 		.height = request->height,
 	};
+	if (settings->view.compare_with == GZ_COMPARE_WITH_PLAIN)
+		gz_illustration_look_show_plain(&view.rays.illustration);
 	const enum gz_result r = make_standard(comparison, &view);
 	if (r != GZ_OK)
 		return r;

@@ -303,6 +303,7 @@ static const struct {
 	{ "attention.importance", with_importance },
 	{ "attention.", with_the_gaze },
 	{ "temporal.weight", with_the_past },
+	{ "view.compare_with", by_illustrate },
 	{ "view.split", with_a_split },
 	{ "view.difference_gain", with_a_difference },
 };

@@ -103,6 +103,7 @@ static const struct {
 	{ "view.gaze", "gaze from" },
 	{ "view.tracker_display", "tracker's display" },
 	{ "view.compare", "compare with standard" },
+	{ "view.compare_with", "beside an illustration" },
 	{ "view.split", "divider, share of width" },
 	{ "view.difference_gain", "difference, times" },
 	{ "view.gaze_mark", "circle in comparisons" },

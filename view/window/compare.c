@@ -7,6 +7,7 @@
 
 #include "view/draw/quad.h"
 #include "view/panels/widgets.h"
+#include "view/settings/scene_keys.h"
 #include "view/window/displays.h"
 #include "view/window/sections.h"
 #include "view/window/standard.h"
@@ -50,6 +51,13 @@ static bool is_compare_wanted(const struct gz_window *window)
 	return window->settings.view.compare != GZ_COMPARE_NONE && window->maker && !window->alone;
 }
 
+/* Whether surfaces under a plain lamp are beside the picture. */
+static bool is_with_plain(const struct gz_window *window)
+{
+	return window->settings.view.compare_with == GZ_COMPARE_WITH_PLAIN &&
+	       gz_setting_applies(&window->settings, "view.compare_with");
+}
+
 static void choose_next_compare(struct gz_window *window, int number)
 {
 	(void)number;
@@ -69,6 +77,26 @@ static void switch_compare(struct gz_window *window, int kind)
 static bool is_compared(const struct gz_window *window, int kind)
 {
 	return window->settings.view.compare == kind;
+}
+
+static bool is_plain_compared(const struct gz_window *window, int number)
+{
+	(void)number;
+	return is_compared(window, GZ_COMPARE_SPLIT) && is_with_plain(window);
+}
+
+/* Put surfaces under a plain lamp beside an illustration, or take them away. */
+static void switch_plain(struct gz_window *window, int number)
+{
+	struct gz_view_settings *view = &window->settings.view;
+	const bool shown = is_plain_compared(window, number);
+	if (!gz_setting_applies(&window->settings, "illustration.show")) {
+		gz_info(window->log, "the picture is no illustration: it is its own plain view");
+		return;
+	}
+	view->compare_with = shown ? GZ_COMPARE_WITH_STANDARD : GZ_COMPARE_WITH_PLAIN;
+	view->compare = shown ? GZ_COMPARE_NONE : GZ_COMPARE_SPLIT;
+	window->present_needed = true;
 }
 
 static void move_split(struct gz_window *window, int direction)
@@ -114,6 +142,14 @@ static const struct gz_window_action compare_actions[] = {
 	  .on_picture = true,
 	  .is_on = is_compared,
 	  .run = switch_compare },
+	{ .help = "beside an illustration: its surfaces under a plain lamp",
+	  .name = "Plain surfaces",
+	  .menu = GZ_MENU_PICTURE,
+	  .section = 1,
+	  .submenu = "Compare with standard",
+	  .words = "illustration lamp side by side",
+	  .is_on = is_plain_compared,
+	  .run = switch_plain },
 	{ .key = GLFW_KEY_LEFT,
 	  .modifiers = GZ_KEY_CONTROL,
 	  .repeats = true,
@@ -175,7 +211,10 @@ static void ask_for_standard(struct gz_window *window)
 {
 	if (!window->compare->worker || !window->any_shown)
 		return;
-	gz_window_ask_for_standard(window, window->compare->worker, window->record.width,
+	struct gz_ray_params rays = *gz_frame_rays(window->maker);
+	if (is_with_plain(window))
+		gz_illustration_look_show_plain(&rays.illustration);
+	gz_window_ask_for_standard(window, window->compare->worker, &rays, window->record.width,
 				   window->record.height);
 }
 
@@ -235,12 +274,16 @@ static void paint_compare(struct gz_window *window, int width, int height)
 					   view->difference_gain, width, height);
 }
 
-static void print_standard(const struct gz_window_compare *self, char *text, size_t size)
+static void print_standard(const struct gz_window *window, char *text, size_t size)
 {
+	const struct gz_window_compare *self = window->compare;
+	const char *name =
+		gz_view_compare_with_names[is_with_plain(window) ? GZ_COMPARE_WITH_PLAIN
+								 : GZ_COMPARE_WITH_STANDARD];
 	if (self->busy)
-		snprintf(text, size, "standard: coming, %.0f %%", 100 * self->share);
+		snprintf(text, size, "%s: coming, %.0f %%", name, 100 * self->share);
 	else
-		snprintf(text, size, "standard%s", self->any ? "" : ": none");
+		snprintf(text, size, "%s%s", name, self->any ? "" : ": none");
 }
 
 static void draw_compare_label(struct gz_window *window, const char *text, float x, bool leftwards)
@@ -304,7 +347,7 @@ static void draw_compare_marks(struct gz_window *window, const struct gz_window_
 		return;
 	draw_compared_gaze(window, gaze);
 	self->share_shown = self->share;
-	print_standard(self, standard, sizeof standard);
+	print_standard(window, standard, sizeof standard);
 	if (window->settings.view.compare == GZ_COMPARE_SPLIT) {
 		draw_divider(window, standard);
 		return;

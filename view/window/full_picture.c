@@ -66,7 +66,8 @@ static void save_full_picture(struct gz_window *window, int number)
 	chosen_size(window, size_px);
 	self->settings = window->made;
 	self->start_ns = gz_clock_now_ns();
-	gz_window_ask_for_standard(window, self->worker, size_px[0], size_px[1]);
+	gz_window_ask_for_standard(window, self->worker, gz_frame_rays(window->maker), size_px[0],
+				   size_px[1]);
 	window->present_needed = true;
 }
 

@@ -82,8 +82,8 @@ static void start_refining(struct gz_window *window)
 		self->asked = false;
 		return;
 	}
-	gz_window_ask_for_standard(window, self->worker, window->record.width,
-				   window->record.height);
+	gz_window_ask_for_standard(window, self->worker, gz_frame_rays(window->maker),
+				   window->record.width, window->record.height);
 }
 
 static void turn_refining(struct gz_window *window)

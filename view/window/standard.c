@@ -31,11 +31,11 @@ enum gz_result gz_window_start_standard(const struct gz_window *window, bool urg
 }
 
 void gz_window_ask_for_standard(const struct gz_window *window, struct gz_reference_worker *worker,
-				int width, int height)
+				const struct gz_ray_params *rays, int width, int height)
 {
 	const struct gz_reference_view view = {
 		.camera = window->made.camera,
-		.rays = *gz_frame_rays(window->maker),
+		.rays = *rays,
 		.image_sampling_rate = window->made.image_sampling_rate,
 		.width = width,
 		.height = height,

@@ -19,8 +19,8 @@ enum gz_result gz_window_start_standard(const struct gz_window *window, bool urg
 					struct gz_reference_worker **out_worker);
 
 /** Ask for the picture on the screen with @p width times @p height px, with the transfer function
- * as it is shown. There was a frame of this scene. */
+ * as it is shown. There was a frame of this scene. @param rays  gz_frame_rays(), or with changes */
 void gz_window_ask_for_standard(const struct gz_window *window, struct gz_reference_worker *worker,
-				int width, int height);
+				const struct gz_ray_params *rays, int width, int height);
 
 #endif
