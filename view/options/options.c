@@ -57,7 +57,7 @@ const struct gz_option gz_view_option_table[] = {
 		  "frame-%04d.png" },
 	{ "print", GZ_OPTION_STRING, AT(print), .max = GZ_PATH_SIZE,
 	  .help = "file for print to write, headless, of the last picture's stipples or hatches, "
-		  "with every pixel cast: .svg, or .png of any size" },
+		  "with every pixel cast: .svg, or .png of up to 131072 px a side" },
 	{ "print-mm", GZ_OPTION_DOUBLE, AT(print_mm), 1, 10000, .preset = "160",
 	  .help = "width of --print on paper, mm" },
 	{ "print-dpi", GZ_OPTION_DOUBLE, AT(print_dpi), 1, 20000, .preset = "600",

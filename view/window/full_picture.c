@@ -1,5 +1,5 @@
-/* The part that saves pictures of full quality, of any size: made by method standard beside the
- * frames, and written when they are ready. */
+/* The part that saves pictures of full quality, of any size up to 16 384 px a side: made by method
+ * standard beside the frames, and written when they are ready. */
 #include <math.h>
 #include <stdio.h>
 
