@@ -138,8 +138,7 @@ uint32_t gz_pick_most_seen(const struct gz_pick *pick);
 
 /** A drawing for print. */
 struct gz_print {
-	/** Its ending says what it is: .svg, marks in millimetres, or .png. Borrowed.
-	 */
+	/** Its ending says what it is: .svg, marks in millimetres, or .png. Borrowed. */
 	const char *path;
 	double width_mm; /**< of the picture on paper, above 0 */
 	double dpi;      /**< .png: pixels of 25.4 mm, above 0 */
