@@ -4,17 +4,21 @@
  * its message.
  *
  * The daemon's share of a core is compared with that of a thread that wakes as often as there are
- * samples and does nothing else. Both are measured in turn, several times, and the medians of all
- * rounds are printed, because the speed of a machine varies.
+ * samples and does nothing else, and with one that also wakes the stream's readers. All are
+ * measured in turn, several times, and the medians of all rounds are printed, because the speed of
+ * a machine varies.
  *
  * usage: daemon_load [OPTION]..., see --help */
 #include <dirent.h>
+#include <linux/futex.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -307,6 +311,7 @@ struct thread_share {
 struct round {
 	double share; /* of a core, all threads of the daemon */
 	double bare;  /* the same for a thread that only wakes */
+	double wakes; /* and for one that also wakes the readers */
 	size_t thread_count;
 	struct thread_share thread[TASKS_MAX];
 	double p50_ms[READERS_MAX], p99_ms[READERS_MAX], worst_ms[READERS_MAX];
@@ -337,20 +342,61 @@ static void take_shares(const struct settings *settings, const struct usage *bef
 	}
 }
 
-/* What the machine takes for waking a thread as often as there are samples, and nothing else. */
-static double bare_wake_share(const struct settings *settings)
+/* Threads that wait for the next number of a futex. */
+struct sleepers {
+	_Atomic uint32_t number;
+	atomic_bool quit;
+};
+
+static void *sleep_on_number(void *user)
+{
+	struct sleepers *sleepers = user;
+	while (!atomic_load(&sleepers->quit))
+		syscall(SYS_futex, &sleepers->number, FUTEX_WAIT, atomic_load(&sleepers->number),
+			NULL, NULL, 0);
+	return NULL;
+}
+
+static void wake_sleepers(struct sleepers *sleepers)
+{
+	atomic_fetch_add(&sleepers->number, 1);
+	syscall(SYS_futex, &sleepers->number, FUTEX_WAKE, READERS_MAX, NULL, NULL, 0);
+}
+
+/* What the machine takes for waking a thread as often as there are samples.
+ * @param sleepers  threads that it wakes each time; NULL: none */
+static double wake_share(const struct settings *settings, struct sleepers *sleepers)
 {
 	struct timespec before, after;
 	prctl(PR_SET_TIMERSLACK, 1);
 	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &before);
 	int64_t begin_ns = gz_clock_now_ns();
 	int wakes = (int)(settings->seconds * settings->rate_hz);
-	for (int i = 1; i <= wakes; i++)
+	for (int i = 1; i <= wakes; i++) {
 		gz_clock_sleep_until_ns(begin_ns + i * GZ_NS_PER_S / settings->rate_hz);
+		if (sleepers)
+			wake_sleepers(sleepers);
+	}
 	clock_gettime(CLOCK_THREAD_CPUTIME_ID, &after);
 	return ((double)(after.tv_sec - before.tv_sec) +
 		1e-9 * (double)(after.tv_nsec - before.tv_nsec)) /
 	       settings->seconds;
+}
+
+/* The same with as many sleepers as there are readers of the stream. */
+static double reader_wake_share(const struct settings *settings)
+{
+	struct sleepers sleepers = { .number = 0 };
+	pthread_t threads[READERS_MAX];
+	for (int i = 0; i < settings->streams; i++)
+		if (pthread_create(&threads[i], NULL, sleep_on_number, &sleepers) != 0)
+			abort();
+	double share = wake_share(settings, &sleepers);
+	atomic_store(&sleepers.quit, true);
+	wake_sleepers(&sleepers);
+	for (int i = 0; i < settings->streams; i++)
+		pthread_join(threads[i], NULL);
+	return share;
 }
 
 static double percentile(const double *sorted, size_t count, double part)
@@ -437,7 +483,8 @@ static bool measure_round(const char *directory, const struct settings *settings
 	for (int i = 0; i < settings->streams + settings->latest; i++)
 		free(readers[i].latency_ms);
 	zmq_ctx_term(context);
-	round->bare = bare_wake_share(settings);
+	round->bare = wake_share(settings, NULL);
+	round->wakes = reader_wake_share(settings);
 	return complete;
 }
 
@@ -484,6 +531,8 @@ static void print_cpu(const struct settings *settings, const struct round *round
 	print_threads(rounds, count);
 	printf("  whole daemon            %5.2f %% of a core\n", 100 * MEDIAN(share));
 	printf("a thread that only wakes  %5.2f %% of a core\n", 100 * MEDIAN(bare));
+	printf("one that wakes the stream's readers  %5.2f %% of a core, %.2f times that\n",
+	       100 * MEDIAN(wakes), MEDIAN(wakes) / MEDIAN(bare));
 	printf("ratio %.2f, in single rounds %.2f to %.2f (target %.1f: %s)\n", middle, ratio[0],
 	       ratio[count - 1], CPU_TARGET, verdict(middle <= CPU_TARGET));
 }

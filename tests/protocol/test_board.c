@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/futex.h>
 #include <poll.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -12,6 +13,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -457,6 +459,130 @@ static void waiting_ends_with_a_message_or_with_its_time(void **state)
 	assert_true(gz_clock_now_ns() - begin_ns < PATIENCE_NS);
 }
 
+/* Readers that wake each other: all messages have nearly the same time, as if there were many. */
+
+enum { CHAIN_READERS = 6, SELFISH_READERS = 6 };
+
+static atomic_uint chain_heard[CHAIN_READERS];
+
+static void *read_chain(void *user)
+{
+	atomic_uint *heard = user;
+	struct gz_board_reader *mine = NULL;
+	struct gz_board_record record;
+	assert_int_equal(gz_board_open(gz_board_fd(board), &mine), GZ_OK);
+	while (!atomic_load(&stopped)) {
+		if (gz_board_next(mine, &record) == GZ_OK)
+			atomic_fetch_add(heard, 1);
+		else
+			gz_board_wait(mine, PATIENCE_NS);
+	}
+	gz_board_close(&mine);
+	return NULL;
+}
+
+/* Give threads the time to wait at the board. If one does not, its wake-up is not tested. */
+static void let_threads_wait(void)
+{
+	gz_clock_sleep_until_ns(gz_clock_now_ns() + 10 * GZ_NS_PER_MS);
+}
+
+static void ring_once(int64_t time_ns)
+{
+	assert_true(write_text("t", "ring", time_ns));
+	gz_board_show(board, true);
+}
+
+/* Whether all readers hear @p rings within @p patience_ns, without a further one. */
+static bool all_hear(unsigned rings, int64_t patience_ns)
+{
+	int64_t until_ns = gz_clock_now_ns() + patience_ns;
+	for (int i = 0; i < CHAIN_READERS;) {
+		if (atomic_load(&chain_heard[i]) >= rings)
+			i++;
+		else if (gz_clock_now_ns() > until_ns)
+			return false;
+		else
+			gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS);
+	}
+	return true;
+}
+
+static void start_chain(pthread_t threads[CHAIN_READERS])
+{
+	for (int i = 0; i < CHAIN_READERS; i++) {
+		atomic_store(&chain_heard[i], 0);
+		assert_int_equal(pthread_create(&threads[i], NULL, read_chain, &chain_heard[i]), 0);
+	}
+	let_threads_wait();
+}
+
+static void stop_chain(pthread_t threads[CHAIN_READERS])
+{
+	atomic_store(&stopped, true);
+	ring_once(PATIENCE_NS); /* so late that all are woken at once */
+	for (int i = 0; i < CHAIN_READERS; i++)
+		pthread_join(threads[i], NULL);
+}
+
+static void readers_wake_each_other(void **state)
+{
+	(void)state;
+	pthread_t threads[CHAIN_READERS];
+	atomic_store(&stopped, false);
+	start_chain(threads);
+	for (unsigned i = 1; i <= 20; i++) {
+		ring_once(i);
+		assert_true(all_hear(i, PATIENCE_NS / 2));
+		let_threads_wait();
+	}
+	stop_chain(threads);
+}
+
+/* Byte 80 is the futex, as docs/protocol.md tells. */
+enum { BELL_BYTE = 80 };
+
+/* A program that waits for messages but wakes nobody. It waits again before others do. */
+static void *wait_and_wake_nobody(void *user)
+{
+	const unsigned char *memory = user;
+	while (!atomic_load(&stopped)) {
+		uint32_t ring;
+		memcpy(&ring, memory + BELL_BYTE, sizeof ring);
+		syscall(SYS_futex, memory + BELL_BYTE, FUTEX_WAIT_BITSET, ring, NULL, NULL,
+			UINT32_C(1) << ring % 32);
+	}
+	return NULL;
+}
+
+/* After that the writer wakes all readers itself. */
+static void readers_that_wake_nobody_hold_up_one_message(void **state)
+{
+	(void)state;
+	pthread_t selfish[SELFISH_READERS], threads[CHAIN_READERS];
+	void *memory =
+		mmap(NULL, GZ_BOARD_HEADER_SIZE, PROT_READ, MAP_SHARED, gz_board_fd(board), 0);
+	assert_ptr_not_equal(memory, MAP_FAILED);
+	atomic_store(&stopped, false);
+	/* They wait first, so they are woken first. */
+	for (int i = 0; i < SELFISH_READERS; i++)
+		assert_int_equal(pthread_create(&selfish[i], NULL, wait_and_wake_nobody, memory),
+				 0);
+	let_threads_wait();
+	start_chain(threads);
+	unsigned held_up = 0;
+	for (unsigned i = 1; i <= 20; i++) {
+		ring_once(i);
+		held_up += !all_hear(i, PATIENCE_NS / 20);
+		let_threads_wait();
+	}
+	assert_true(held_up <= 1);
+	stop_chain(threads);
+	for (int i = 0; i < SELFISH_READERS; i++)
+		pthread_join(selfish[i], NULL);
+	munmap(memory, GZ_BOARD_HEADER_SIZE);
+}
+
 /* The door. */
 
 static char door_path[64];
@@ -552,6 +678,8 @@ TEST_SUITE(board)
 		TEST(garbage_on_a_board_is_found),
 		TEST(readers_beside_a_fast_writer_read_whole_messages),
 		TEST(waiting_ends_with_a_message_or_with_its_time),
+		TEST(readers_wake_each_other),
+		TEST(readers_that_wake_nobody_hold_up_one_message),
 		DOOR_TEST(door_gives_the_board_to_those_who_ask),
 		DOOR_TEST(door_without_a_daemon_is_not_found),
 	};
