@@ -195,29 +195,54 @@ static void velocity_at(struct gz_classify_state *state, uint64_t index, struct 
 	(void)slope_of(&line, out_deg_s);
 }
 
+/* Measure the speed of sample @p index, less the slow movement. */
+static void measure_speed(struct gz_classify_state *state, double half_ns, uint64_t index)
+{
+	struct gz_classify_entry *entry = gz_classify_at(state, index);
+	entry->fast_deg_s = 0;
+	if (!entry->valid)
+		return;
+	struct time_window window = { half_ns, half_ns };
+	velocity_at(state, index, window, entry->velocity_deg_s);
+	for (int i = 0; i < 3; i++)
+		entry->velocity_deg_s[i] -= state->slow.velocity_deg_s[i];
+	entry->fast_deg_s = gz_length3(entry->velocity_deg_s);
+}
+
+/* Half of the window over which speed is measured. A quarter of a period is added because of jitter
+ * in the time stamps. */
+static double half_speed_window_ns(const struct gz_classify_state *state,
+				   const struct gz_classify_params *params)
+{
+	return params->velocity_window_ms * 0.5e6 + state->period_ns * 0.25;
+}
+
 /* Measure the speed of all samples up to @p end whose window is complete; of all of them if @p
  * force.
  */
 static void measure_speeds(struct gz_classify_state *state, const struct gz_classify_params *params,
 			   uint64_t end, bool force)
 {
-	/* A quarter of a period is added because of jitter in the time stamps. */
-	double half_ns = params->velocity_window_ms * 0.5e6 + state->period_ns * 0.25;
+	double half_ns = half_speed_window_ns(state, params);
 	int64_t newest_ns = gz_classify_at(state, state->count - 1)->time_ns;
 	for (; state->measured < end; state->measured++) {
-		struct gz_classify_entry *entry = gz_classify_at(state, state->measured);
-		bool complete = (double)(newest_ns - entry->time_ns) >= half_ns - state->period_ns;
+		int64_t time_ns = gz_classify_at(state, state->measured)->time_ns;
+		bool complete = (double)(newest_ns - time_ns) >= half_ns - state->period_ns;
 		if (!complete && !force)
 			return;
-		entry->fast_deg_s = 0;
-		if (!entry->valid)
-			continue;
-		struct time_window window = { half_ns, half_ns };
-		velocity_at(state, state->measured, window, entry->velocity_deg_s);
-		for (int i = 0; i < 3; i++)
-			entry->velocity_deg_s[i] -= state->slow.velocity_deg_s[i];
-		entry->fast_deg_s = gz_length3(entry->velocity_deg_s);
+		measure_speed(state, half_ns, state->measured);
 	}
+}
+
+/* Measure what the decision about sample @p index needs. Learned labels need the speed of saccades
+ * only, whose peak is told. */
+static void measure_for_decision(struct gz_classify_state *state,
+				 const struct gz_classify_params *params, uint64_t index)
+{
+	if (params->source != GZ_CLASSIFY_LEARNED)
+		measure_speeds(state, params, index + 1, true);
+	else if (gz_classify_at(state, index)->learned == GZ_FOREST_SACCADE)
+		measure_speed(state, half_speed_window_ns(state, params), index);
 }
 
 void gz_classify_slow_restart(struct gz_classify_slow *slow)
@@ -311,6 +336,12 @@ static void update_quick_saccade(struct gz_classify_state *state,
  * longer times (SMOOTH_US in classifier/movement.c), so in between they hardly change. */
 static const int64_t ASK_NS = 1500 * GZ_NS_PER_US;
 
+/* The forest for certain labels is asked more seldom while the eye has moved slowly for some time:
+ * then its labels change between fixation and pursuit only. Chosen: longer than what follows a
+ * saccade, and as long as such a label may be late. */
+static const int64_t CALM_NS = 60 * GZ_NS_PER_MS;
+static const int64_t ASK_CALM_NS = 6 * GZ_NS_PER_MS;
+
 /* Label sample @p index by what a forest makes of the newest features; without them as the sample
  * before. */
 static void label_by_forest(struct gz_classify_state *state, const struct gz_forest *forest,
@@ -344,22 +375,33 @@ static bool needs_own_label(struct gz_classify_state *state, uint64_t index)
 static void ask_forests(struct gz_classify_state *state, const struct gz_classify_params *params,
 			const struct gz_display *display, const struct gz_classify_input *input)
 {
-	float features[GZ_MOVEMENT_FEATURES], *asked = NULL;
+	float features[GZ_MOVEMENT_FEATURES], *asked = NULL, *asked_certain = NULL;
 	const struct gz_movement_input measured = { input->time_ns, input->valid, input->raw };
 	const uint64_t newest = state->count - 1;
 	const uint64_t delay = samples_within(state, CERTAIN_WITHIN_MS);
 	const bool certain =
 		delay > 0 && delay <= newest && delay <= gz_classify_delay(state, params);
+	const bool own_certain = certain && needs_own_label(state, newest - delay);
 	if (input->time_ns - state->asked_ns >= ASK_NS || needs_own_label(state, newest) ||
-	    (certain && needs_own_label(state, newest - delay))) {
+	    own_certain) {
 		state->asked_ns = input->time_ns;
 		asked = features;
+	}
+	const bool calm = state->period_ns < (double)ASK_NS &&
+			  input->time_ns - state->lively_ns > CALM_NS &&
+			  input->time_ns - state->asked_certain_ns < ASK_CALM_NS;
+	if (asked && (own_certain || !calm)) {
+		state->asked_certain_ns = input->time_ns;
+		asked_certain = features;
 	}
 	if (!gz_movement_step(&state->movement, display, &measured, asked))
 		return;
 	label_by_forest(state, &gz_forest_at_once, &state->at_once_memory, asked, newest);
+	enum gz_forest_class now = gz_classify_at(state, newest)->learned;
+	if (now != GZ_FOREST_FIXATION && now != GZ_FOREST_PURSUIT)
+		state->lively_ns = input->time_ns;
 	if (certain)
-		label_by_forest(state, &gz_forest_certain, &state->certain_memory, asked,
+		label_by_forest(state, &gz_forest_certain, &state->certain_memory, asked_certain,
 				newest - delay);
 }
 
@@ -421,7 +463,7 @@ static void emit_certain_labels(struct gz_classify_state *state,
 	       (all || is_label_due(state, params))) {
 		const struct gz_classify_entry *entry = gz_classify_at(state, state->certain);
 		if (!state->decided) {
-			measure_speeds(state, params, state->certain + 1, true);
+			measure_for_decision(state, params, state->certain);
 			gz_classify_decide(state, params, state->certain);
 		}
 		enum gz_event event = state->machine.event;
@@ -465,7 +507,8 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 		state->any_valid = true;
 		state->valid_ns = entry->time_ns;
 	}
-	measure_speeds(state, params, state->count, false);
+	if (params->source != GZ_CLASSIFY_LEARNED)
+		measure_speeds(state, params, state->count, false);
 	emit_certain_labels(state, params, false, &out);
 	state->now = immediate_label(state, params, entry);
 	if (entry->still_scene && state->now == GZ_EVENT_PURSUIT)

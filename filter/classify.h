@@ -164,7 +164,9 @@ struct gz_classify_state {
 	/* Used if the labels are learned: */
 	struct gz_movement movement;
 	struct gz_forest_memory at_once_memory, certain_memory;
-	int64_t asked_ns; /**< when the forests were asked last; set once a sample is there */
+	/* When the forests were asked last; set once a sample is there. */
+	int64_t asked_ns, asked_certain_ns;
+	int64_t lively_ns; /**< newest sample that was no slow movement */
 };
 
 /** The newest sample as the steps after this one get it; there must have been one. */

@@ -1,6 +1,5 @@
 #include "protocol/wire_values.h"
 
-#include <endian.h>
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -8,79 +7,24 @@
 
 #include "base/clock.h"
 
-/* Messages are packed here and not by msgpack-c, which calls a function for each piece of a value:
- * a gaze message has two hundred pieces, for each sample. The formats are those of MessagePack's
- * specification, section "Formats". */
-
-/* Room for @p size further bytes; NULL if the message is full. */
-static inline unsigned char *take_room(struct gz_pack *pack, size_t size)
-{
-	struct gz_wire_message *message = pack->message;
-	if (pack->full || size > sizeof message->bytes - message->size) {
-		pack->full = true;
-		return NULL;
-	}
-	unsigned char *room = message->bytes + message->size;
-	message->size += size;
-	return room;
-}
-
-/* Room for a key and then @p size bytes of its value; at the value. NULL if the message is full. */
-static inline unsigned char *take_keyed_room(struct gz_pack *pack, const char *key, size_t size)
-{
-	if (!key)
-		return take_room(pack, size);
-	size_t length = strlen(key);
-	if (length >= 32) {
-		gz_pack_text(pack, NULL, key);
-		return take_room(pack, size);
-	}
-	unsigned char *room = take_room(pack, 1 + length + size);
-	if (!room)
-		return NULL;
-	*room = (unsigned char)(0xa0 | length);
-	memcpy(room + 1, key, length);
-	return room + 1 + length;
-}
-
 static void append_bytes(struct gz_pack *pack, const char *bytes, size_t size)
 {
-	unsigned char *room = take_room(pack, size);
+	unsigned char *room = gz_pack_room(pack, size);
 	if (room)
 		memcpy(room, bytes, size);
-}
-
-/* A key, and a value that is one byte. */
-static inline void pack_byte(struct gz_pack *pack, const char *key, unsigned byte)
-{
-	unsigned char *room = take_keyed_room(pack, key, 1);
-	if (room)
-		*room = (unsigned char)byte;
-}
-
-/* A key, a format and a number of @p size bytes, which is a constant for each caller. */
-static inline void pack_number(struct gz_pack *pack, const char *key, unsigned char format,
-			       uint64_t value, size_t size)
-{
-	unsigned char *room = take_keyed_room(pack, key, 1 + size);
-	if (!room)
-		return;
-	value = htobe64(value);
-	*room = format;
-	memcpy(room + 1, (const unsigned char *)&value + sizeof value - size, size);
 }
 
 /* A key, and the head of a text of @p size bytes. */
 static void pack_text_head(struct gz_pack *pack, const char *key, size_t size)
 {
 	if (size < 32)
-		pack_byte(pack, key, 0xa0 | (unsigned)size);
+		gz_pack_byte(pack, key, 0xa0 | (unsigned)size);
 	else if (size <= UINT8_MAX)
-		pack_number(pack, key, 0xd9, size, 1);
+		gz_pack_number(pack, key, 0xd9, size, 1);
 	else if (size <= UINT16_MAX)
-		pack_number(pack, key, 0xda, size, 2);
+		gz_pack_number(pack, key, 0xda, size, 2);
 	else
-		pack_number(pack, key, 0xdb, size, 4);
+		gz_pack_number(pack, key, 0xdb, size, 4);
 }
 
 void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message)
@@ -100,37 +44,11 @@ enum gz_result gz_pack_end(struct gz_pack *pack)
 	return GZ_ERR_FULL;
 }
 
-void gz_pack_map(struct gz_pack *pack, const char *key, size_t pairs)
-{
-	if (pairs < 16)
-		pack_byte(pack, key, 0x80 | (unsigned)pairs);
-	else if (pairs <= UINT16_MAX)
-		pack_number(pack, key, 0xde, pairs, 2);
-	else
-		pack_number(pack, key, 0xdf, pairs, 4);
-}
-
-void gz_pack_array(struct gz_pack *pack, const char *key, size_t elements)
-{
-	if (elements < 16)
-		pack_byte(pack, key, 0x90 | (unsigned)elements);
-	else if (elements <= UINT16_MAX)
-		pack_number(pack, key, 0xdc, elements, 2);
-	else
-		pack_number(pack, key, 0xdd, elements, 4);
-}
-
-void gz_pack_nil(struct gz_pack *pack, const char *key)
-{
-	pack_byte(pack, key, 0xc0);
-}
-
-/* Length of the UTF-8 character at @p text, bytes; 0 if it is not one. RFC 3629, section 4. */
+/* Length of the UTF-8 character beyond ASCII at @p text, bytes; 0 if it is not one. RFC 3629,
+ * section 4. */
 static size_t utf8_character_length(const unsigned char *text)
 {
 	unsigned char lead = text[0];
-	if (lead < 0x80)
-		return 1;
 	size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
 	unsigned char low = 0x80, high = 0xbf; /* allowed in the second byte */
 	if (lead < 0xc2 || lead > 0xf4)
@@ -156,6 +74,10 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 	size_t left = strlen(text), good = 0;
 	pack_text_head(pack, key, left);
 	while (good < left) {
+		if ((unsigned char)text[good] < 0x80) {
+			good++;
+			continue;
+		}
 		/* The final NUL is no continuation byte, so this never reads past it. */
 		size_t length = utf8_character_length((const unsigned char *)text + good);
 		if (length > 0) {
@@ -171,23 +93,18 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 	append_bytes(pack, text, good);
 }
 
-void gz_pack_bool(struct gz_pack *pack, const char *key, bool value)
-{
-	pack_byte(pack, key, value ? 0xc3 : 0xc2);
-}
-
 static void pack_negative(struct gz_pack *pack, const char *key, int64_t value)
 {
 	if (value >= -32)
-		pack_byte(pack, key, 0xff & (unsigned)value);
+		gz_pack_byte(pack, key, 0xff & (unsigned)value);
 	else if (value >= INT8_MIN)
-		pack_number(pack, key, 0xd0, (uint64_t)value, 1);
+		gz_pack_number(pack, key, 0xd0, (uint64_t)value, 1);
 	else if (value >= INT16_MIN)
-		pack_number(pack, key, 0xd1, (uint64_t)value, 2);
+		gz_pack_number(pack, key, 0xd1, (uint64_t)value, 2);
 	else if (value >= INT32_MIN)
-		pack_number(pack, key, 0xd2, (uint64_t)value, 4);
+		gz_pack_number(pack, key, 0xd2, (uint64_t)value, 4);
 	else
-		pack_number(pack, key, 0xd3, (uint64_t)value, 8);
+		gz_pack_number(pack, key, 0xd3, (uint64_t)value, 8);
 }
 
 void gz_pack_int(struct gz_pack *pack, const char *key, int64_t value)
@@ -201,40 +118,15 @@ void gz_pack_int(struct gz_pack *pack, const char *key, int64_t value)
 void gz_pack_uint(struct gz_pack *pack, const char *key, uint64_t value)
 {
 	if (value < 0x80)
-		pack_byte(pack, key, (unsigned)value);
+		gz_pack_byte(pack, key, (unsigned)value);
 	else if (value <= UINT8_MAX)
-		pack_number(pack, key, 0xcc, value, 1);
+		gz_pack_number(pack, key, 0xcc, value, 1);
 	else if (value <= UINT16_MAX)
-		pack_number(pack, key, 0xcd, value, 2);
+		gz_pack_number(pack, key, 0xcd, value, 2);
 	else if (value <= UINT32_MAX)
-		pack_number(pack, key, 0xce, value, 4);
+		gz_pack_number(pack, key, 0xce, value, 4);
 	else
-		pack_number(pack, key, 0xcf, value, 8);
-}
-
-void gz_pack_fixed_int64(struct gz_pack *pack, const char *key, int64_t value)
-{
-	pack_number(pack, key, 0xd3, (uint64_t)value, 8);
-}
-
-void gz_pack_float(struct gz_pack *pack, const char *key, float value)
-{
-	uint32_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	if (isfinite(value))
-		pack_number(pack, key, 0xca, bits, 4);
-	else
-		gz_pack_nil(pack, key);
-}
-
-void gz_pack_double(struct gz_pack *pack, const char *key, double value)
-{
-	uint64_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	if (isfinite(value))
-		pack_number(pack, key, 0xcb, bits, 8);
-	else
-		gz_pack_nil(pack, key);
+		gz_pack_number(pack, key, 0xcf, value, 8);
 }
 
 void gz_pack_doubles(struct gz_pack *pack, const char *key, const double *values, size_t count)

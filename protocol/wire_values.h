@@ -17,12 +17,7 @@
 #include <msgpack.h>
 
 #include "protocol/wire.h"
-
-/** A message being packed. */
-struct gz_pack {
-	struct gz_wire_message *message;
-	bool full;
-};
+#include "protocol/wire_pack.h"
 
 /** Begin an empty @p message. */
 void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message);
@@ -30,20 +25,9 @@ void gz_pack_begin(struct gz_pack *pack, struct gz_wire_message *message);
 /** GZ_OK, or GZ_ERR_FULL with the message emptied. */
 enum gz_result gz_pack_end(struct gz_pack *pack);
 
-/* Pack a key and a value. With a NULL key the value alone is packed, as an element of an array. */
-void gz_pack_map(struct gz_pack *pack, const char *key, size_t pairs);
-void gz_pack_array(struct gz_pack *pack, const char *key, size_t elements);
-void gz_pack_nil(struct gz_pack *pack, const char *key);
-/** Pack text. Bytes that are not UTF-8 become '?', because readers would refuse the whole message.
- */
-void gz_pack_text(struct gz_pack *pack, const char *key, const char *text);
-void gz_pack_bool(struct gz_pack *pack, const char *key, bool value);
+/* Further values, as in wire_pack.h. */
 void gz_pack_int(struct gz_pack *pack, const char *key, int64_t value);
 void gz_pack_uint(struct gz_pack *pack, const char *key, uint64_t value);
-/** Pack an integer in 9 bytes, whatever its value. */
-void gz_pack_fixed_int64(struct gz_pack *pack, const char *key, int64_t value);
-void gz_pack_float(struct gz_pack *pack, const char *key, float value);
-void gz_pack_double(struct gz_pack *pack, const char *key, double value);
 
 /** Pack an array of @p count doubles. */
 void gz_pack_doubles(struct gz_pack *pack, const char *key, const double *values, size_t count);

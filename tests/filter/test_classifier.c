@@ -219,6 +219,42 @@ static void forests_are_not_asked_more_often_than_they_learned(void **state)
 	}
 }
 
+/* At 1200 Hz the forest for certain labels is asked as often as the other one while a saccade may
+ * be in what it labels, and at least every 7 ms in a steady fixation. */
+static void certain_labels_of_a_calm_eye_are_asked_for_seldom(void **state)
+{
+	(void)state;
+	static struct gz_classify_state classify;
+	const struct gz_classify_params params = gz_pipeline_default_params().classify;
+	const struct gz_display display = wide_display();
+	struct gz_random random = gz_random_seeded(7, 7);
+	int calm[2] = { 0, 0 }, lively[2] = { 0, 0 };
+	classify = (struct gz_classify_state) { .count = 0 };
+	for (int k = 0; k < 1200; k++) {
+		int64_t time_ns = (int64_t)(1e9 * (k + 1) / 1200);
+		/* One saccade of 10 degrees in 30 ms, after half a second. */
+		double part = fmin(1, fmax(0, (k - 600) / 36.0));
+		float x = (float)(0.4 + 0.1 * part + 2e-4 * gz_random_normal(&random));
+		const struct gz_classify_input input = {
+			.seq = (uint64_t)k,
+			.time_ns = time_ns,
+			.valid = true,
+			.raw = { x, 0.5F },
+			.point = { x, 0.5F },
+			.confidence = 1,
+		};
+		(void)gz_classify_step(&classify, &params, &display, &input);
+		int *asked = k >= 300 && k < 600 ? calm : lively;
+		if (k < 300 || k >= 620 + 60)
+			continue;
+		asked[0] += classify.asked_ns == time_ns;
+		asked[1] += classify.asked_certain_ns == time_ns;
+	}
+	CHECK_BETWEEN(calm[0], 140, 160);
+	CHECK_BETWEEN(calm[1], 35, 50);
+	assert_true(lively[1] >= lively[0] - 3);
+}
+
 /* Lists of the questions give the scores of the trees: with the features of a resting eye, with
  * saccades and losses, and with features that are exactly at thresholds or beyond all of them. */
 static void lists_of_questions_give_the_scores_of_the_trees(void **state)
@@ -333,6 +369,7 @@ TEST_SUITE(classifier)
 		cmocka_unit_test(any_samples_give_finite_features_and_the_same_again),
 		cmocka_unit_test(samples_without_features_count_for_the_next_ones),
 		cmocka_unit_test(forests_are_not_asked_more_often_than_they_learned),
+		cmocka_unit_test(certain_labels_of_a_calm_eye_are_asked_for_seldom),
 		cmocka_unit_test(lists_of_questions_give_the_scores_of_the_trees),
 		cmocka_unit_test(ringing_follows_saccades_only_and_else_is_the_next_likeliest),
 		cmocka_unit_test(a_forest_that_does_not_know_ringing_never_finds_it),
