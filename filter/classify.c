@@ -84,12 +84,26 @@ static struct gz_classify_entry *add_entry(struct gz_classify_state *state,
 		.point = input->point,
 		.confidence = input->confidence,
 		.valid = input->valid,
+		.lid = input->valid && input->lid,
 		.still_scene = params->still_scene || input->still_scene,
 		.after_loss = input->valid && gap,
 	};
 	if (input->valid)
 		gz_direction_deg(display, input->point, entry->direction_deg);
 	return entry;
+}
+
+/* Whether it was the lid that moved is known only after it has moved. */
+static void mark_covered_samples(struct gz_classify_state *state, int64_t since_ns)
+{
+	uint64_t first = state->count > GZ_CLASSIFY_RING ? state->count - GZ_CLASSIFY_RING : 0;
+	first = state->certain > first ? state->certain : first;
+	for (uint64_t i = state->count; i > first; i--) {
+		struct gz_classify_entry *entry = gz_classify_at(state, i - 1);
+		if (entry->time_ns < since_ns)
+			return;
+		entry->lid = entry->valid;
+	}
 }
 
 /*
@@ -413,7 +427,7 @@ static enum gz_event immediate_label(const struct gz_classify_state *state,
 		if (!state->any_valid)
 			return GZ_EVENT_LOST;
 		int64_t since_ns = entry->time_ns - state->valid_ns;
-		if ((double)since_ns <= gz_classify_dropout_ns(state, params))
+		if (!entry->lid && (double)since_ns <= gz_classify_dropout_ns(state, params))
 			return state->now;
 		return gz_ns_to_ms(since_ns) <= params->blink_max_ms ? GZ_EVENT_BLINK
 								     : GZ_EVENT_LOST;
@@ -495,6 +509,8 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 	out.velocity_deg_s = 0;
 	out.final_count = 0; /* entries beyond this are not read, so they stay unset */
 	struct gz_classify_entry *entry = add_entry(state, params, display, input);
+	if (entry->lid)
+		mark_covered_samples(state, input->lid_since_ns);
 	if (params->source == GZ_CLASSIFY_LEARNED)
 		ask_forests(state, params, display, input);
 	bool good = gz_classify_is_good(params, entry);

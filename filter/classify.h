@@ -20,7 +20,8 @@
  *
  * Instead of these rules, the labels can come from what was learned from recordings that people
  * labelled (classifier/forest.h). Its noise, such as a lid in front of the pupil, counts as a
- * sample without a good measurement.
+ * sample without a good measurement. So does, with either, a lid that the pupil's size tells of
+ * (lid.h): such a sample is a blink at once.
  */
 #ifndef GZ_FILTER_CLASSIFY_H
 #define GZ_FILTER_CLASSIFY_H
@@ -94,6 +95,7 @@ struct gz_classify_entry {
 	float confidence;
 	bool valid;
 	bool still_scene;             /**< nothing moves: it is no pursuit */
+	bool lid;                     /**< a lid covers the pupil */
 	bool after_loss;              /**< good, and the first after a blink, a loss or the start */
 	enum gz_forest_class learned; /**< what the forests say: at once, then for certain */
 	double velocity_deg_s[3];     /**< less the slow movement; set once measured */
@@ -184,6 +186,8 @@ struct gz_classify_input {
 	struct gz_point point; /**< ignored unless valid */
 	struct gz_point raw;   /**< the same before spikes were removed; ignored unless valid */
 	float confidence;      /**< [0, 1] */
+	bool lid;              /**< a lid covers the pupil: what was measured is not the eye */
+	int64_t lid_since_ns;  /**< if so: and all samples since then; ignored otherwise */
 	bool still_scene;      /**< nothing moves in the scene at this moment: it is no pursuit */
 };
 

@@ -390,7 +390,7 @@ static void decide_missing_sample(struct gz_classify_state *state,
 				  const struct gz_classify_params *params, uint64_t index)
 {
 	struct gz_classify_machine *machine = &state->machine;
-	if (!is_within_loss(state, params, index))
+	if (!gz_classify_at(state, index)->lid && !is_within_loss(state, params, index))
 		return; /* the label stays */
 	double since_ms = gz_ns_to_ms(gz_classify_at(state, index)->time_ns - machine->valid_ns);
 	bool blink = machine->any_valid && since_ms <= params->blink_max_ms;

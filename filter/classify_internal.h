@@ -18,7 +18,7 @@ static inline struct gz_classify_entry *gz_classify_at(struct gz_classify_state 
 static inline bool gz_classify_is_good(const struct gz_classify_params *params,
 				       const struct gz_classify_entry *entry)
 {
-	return entry->valid &&
+	return entry->valid && !entry->lid &&
 	       !(params->source == GZ_CLASSIFY_LEARNED && entry->learned == GZ_FOREST_NOISE);
 }
 

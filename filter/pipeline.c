@@ -155,8 +155,8 @@ static void send_blink(struct gz_pipeline_output *out, bool onset, int64_t time_
 	};
 }
 
-/* A blink is announced once nothing is measured; it has begun before that if a lid moved the point.
- * Movement of that kind alone is not announced. */
+/* A blink is announced once nothing is measured, or the pupil tells of the lid; it has begun before
+ * that if a lid moved the point. Movement of that kind alone is not announced. */
 static void update_blink_message(struct gz_messages_state *state,
 				 const struct gz_classify_params *params,
 				 const struct gz_classify_output *label,
@@ -165,8 +165,9 @@ static void update_blink_message(struct gz_messages_state *state,
 {
 	int64_t time_ns = input->time_ns;
 	bool short_enough = gz_ns_to_ms(time_ns - label->last_valid_ns) <= params->blink_max_ms;
-	if (!state->in_blink && ((label->event == GZ_EVENT_BLINK && !input->valid) ||
-				 (label->resumed && short_enough))) {
+	bool unseen = !input->valid || input->lid;
+	if (!state->in_blink &&
+	    ((label->event == GZ_EVENT_BLINK && unseen) || (label->resumed && short_enough))) {
 		send_blink(out, true, label->last_valid_ns, 1);
 		state->in_blink = true;
 	}
@@ -257,6 +258,11 @@ static struct gz_classify_input reduce_sample(struct gz_pipeline *pipeline,
 	bool restart = pipeline->event == GZ_EVENT_BLINK || pipeline->event == GZ_EVENT_LOST;
 	input.point = gz_despike_step(&pipeline->despike, &pipeline->params.despike,
 				      &pipeline->display, sample->host_ns, *out_raw, restart);
+	struct gz_lid_output lid =
+		gz_lid_step(&pipeline->lid, &pipeline->params.lid, &pipeline->display, sample,
+			    *out_raw, input.confidence);
+	input.lid = lid.covers;
+	input.lid_since_ns = lid.since_ns;
 	return input;
 }
 

@@ -1,10 +1,10 @@
 /**
  * @file
- * From sample to fixation: validate, correct, combine, despike, classify, smooth, and the messages
- * about fixations, blinks and saccades. All are pure steps over a state: no I/O, no clock, no
- * allocation. Every timeout runs on sample time, so a log that is replayed gives the same messages
- * bit for bit. The daemon runs the pipeline live; the viewer and the benchmark run it over a log in
- * their own process.
+ * From sample to fixation: validate, correct, combine, despike, watch the lid, classify, smooth,
+ * and the messages about fixations, blinks and saccades. All are pure steps over a state: no I/O,
+ * no clock, no allocation. Every timeout runs on sample time, so a log that is replayed gives the
+ * same messages bit for bit. The daemon runs the pipeline live; the viewer and the benchmark run it
+ * over a log in their own process.
  */
 #ifndef GZ_FILTER_PIPELINE_H
 #define GZ_FILTER_PIPELINE_H
@@ -20,6 +20,7 @@
 #include "filter/combine.h"
 #include "filter/despike.h"
 #include "filter/landing.h"
+#include "filter/lid.h"
 #include "filter/smooth.h"
 #include "filter/validate.h"
 #include "protocol/display.h"
@@ -32,6 +33,7 @@ struct gz_pipeline_params {
 	struct gz_correct_params correct;
 	struct gz_combine_params combine;
 	struct gz_despike_params despike;
+	struct gz_lid_params lid;
 	struct gz_classify_params classify;
 	struct gz_smooth_params smooth;
 };
@@ -58,7 +60,7 @@ enum gz_result gz_pipeline_check_params(const struct gz_pipeline_params *params,
 /**
  * The settings that a gaze log was recorded with as far as its header does not name them: the
  * presets. If it names settings but not the source of labels, it is older than the choice, and
- * labels come from the rules.
+ * labels come from the rules; likewise the guard against lids is off.
  */
 struct gz_pipeline_params gz_pipeline_unnamed_params(const struct gz_gaze_log_header *header);
 
@@ -151,6 +153,7 @@ struct gz_pipeline {
 	struct gz_validate_state validate;
 	struct gz_combine_state combine;
 	struct gz_despike_state despike;
+	struct gz_lid_state lid;
 	struct gz_classify_state classify;
 	struct gz_smooth_state smooth;
 	struct gz_landing_state landing;

@@ -12,6 +12,7 @@
 #define CORRECT(field)  offsetof(struct gz_pipeline_params, correct.field)
 #define COMBINE(field)  offsetof(struct gz_pipeline_params, combine.field)
 #define DESPIKE(field)  offsetof(struct gz_pipeline_params, despike.field)
+#define LID(field)      offsetof(struct gz_pipeline_params, lid.field)
 #define CLASSIFY(field) offsetof(struct gz_pipeline_params, classify.field)
 #define SMOOTH(field)   offsetof(struct gz_pipeline_params, smooth.field)
 
@@ -21,6 +22,7 @@ static const char *const source_names[] = { "rules", "learned", NULL };
 /* Sources of the presets, if the help does not give them:
  *
  * max_velocity_deg_s  eyes turn at up to 900 degrees per second (Bauer 2018, section 2.2)
+ * lid_change          three times what a pupil can change by itself (lid.h)
  * peak_factor         Engbert and Kliegl 2003 take 6 standard deviations of each axis, which are 5
  *                     medians of the speed
  * onset_factor        less than half of it: Nyström and Holmqvist 2010 take 3 against 6 standard
@@ -64,6 +66,9 @@ const struct gz_option gz_pipeline_options[] = {
 	  .help = "smaller departures are not spikes, degrees" },
 	{ "pipeline.despike_factor", GZ_OPTION_DOUBLE, DESPIKE(noise_factor), 0, 1000,
 	  .preset = "8", .help = "nor are departures below this multiple of the usual step" },
+	{ "pipeline.lid_change", GZ_OPTION_DOUBLE, LID(change), 0, 1, .preset = "0.12",
+	  .help = "change of the pupil within 24 ms that only a lid makes, of its usual size; 0 "
+		  "switches this off" },
 	{ "pipeline.final_delay_ms", GZ_OPTION_DOUBLE, CLASSIFY(final_delay_ms), 0, 100,
 	  .preset = "10", .help = "greatest delay of the certain label, ms" },
 	{ "pipeline.velocity_window_ms", GZ_OPTION_DOUBLE, CLASSIFY(velocity_window_ms), 1, 100,
@@ -235,8 +240,10 @@ static enum gz_result parse_recorded_setting(const struct gz_gaze_log_setting *s
 struct gz_pipeline_params gz_pipeline_unnamed_params(const struct gz_gaze_log_header *header)
 {
 	struct gz_pipeline_params params = gz_pipeline_default_params();
-	if (header->setting_count > 0) /* a source of labels that it names comes later */
+	if (header->setting_count > 0) { /* what it names comes later */
 		params.classify.source = GZ_CLASSIFY_RULES;
+		params.lid.change = 0;
+	}
 	return params;
 }
 

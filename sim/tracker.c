@@ -23,6 +23,16 @@ static const double PUPIL_SWING_MM = 0.3;
 static const double PUPIL_SWING_HZ = 0.1;
 static const double PUPIL_NOISE_MM = 0.01;
 
+/* What a lid does to the measurement of a pupil, as in the recordings of Andersson et al. 2017. The
+ * lid is at the top of the pupil when it has come down by the first share of its way, and at the
+ * bottom at the second. A pupil of which less than the least part of its height is left is not
+ * found. The middle of what is left lies lower, which the tracker takes for a movement down: by so
+ * much if all is covered. */
+static const double LID_TOP = 0.2;
+static const double LID_BOTTOM = 0.65;
+static const double LID_LEAST_PART = 0.35;
+static const double LID_SHIFT_DEG = 25;
+
 /* Mean time that an eye stays lost; chosen. */
 static const double EYE_LOSS_S = 0.05;
 
@@ -71,6 +81,9 @@ const struct gz_option gz_sim_options[] = {
 	  .preset = "1000", .help = "device clock at the start, ms" },
 	{ "sim.clock_skew_ppm", GZ_OPTION_DOUBLE, AT(clock_skew_ppm), -10000, 10000, .preset = "20",
 	  .help = "how much faster the device clock runs than the host's, parts per million" },
+	{ "sim.lids", GZ_OPTION_BOOL, AT(lids), .preset = "false",
+	  .help = "measure pupils that a lid covers in part; no: a blink is a loss from its "
+		  "beginning" },
 	{ "sim.combined_only", GZ_OPTION_BOOL, AT(combined_only), .preset = "false",
 	  .help = "deliver one point for both eyes" },
 	{ "sim.realtime", GZ_OPTION_BOOL, AT(realtime), .preset = "true",
@@ -289,10 +302,18 @@ static double pupil_at(struct gz_sim_tracker *tracker, double since_s)
 	       PUPIL_NOISE_MM * gz_random_normal(&tracker->noise);
 }
 
+/* The part of the pupil's height that the lid leaves. */
+static double uncovered_part(double lid)
+{
+	double covered = (lid - LID_TOP) / (LID_BOTTOM - LID_TOP);
+	return 1 - fmax(0, fmin(1, covered));
+}
+
 /* Measure one eye. If it is not @p seen, the same random numbers are drawn but nothing is measured.
- */
+ * @param part  of the pupil's height that is not covered */
 static void measure_eye(struct gz_sim_tracker *tracker, int index, struct gz_point truth,
-			const double spike_deg[2], bool seen, struct gz_eye_sample *eye)
+			const double spike_deg[2], double part, bool seen,
+			struct gz_eye_sample *eye)
 {
 	double offset_deg[2];
 	for (int axis = 0; axis < 2; axis++)
@@ -305,7 +326,9 @@ static void measure_eye(struct gz_sim_tracker *tracker, int index, struct gz_poi
 	}
 	eye->valid = true;
 	eye->confidence = 1;
-	eye->pupil_mm = (float)pupil_mm;
+	offset_deg[1] += LID_SHIFT_DEG * (1 - part);
+	/* The mean of its width and its height. */
+	eye->pupil_mm = (float)(pupil_mm * (1 + part) / 2);
 	eye->point = apply_calibration(&tracker->params,
 				       add_angular_offset(&tracker->display, truth, offset_deg));
 	set_eye_geometry(&tracker->display, index, eye);
@@ -330,13 +353,14 @@ static void average_eyes(struct gz_sample *sample)
 static void measure_sample(struct gz_sim_tracker *tracker, const struct gz_viewer_truth *truth,
 			   struct gz_sample *sample)
 {
-	bool open = truth->event != GZ_EVENT_BLINK;
+	double part = tracker->params.lids ? uncovered_part(truth->lid) : 1;
+	bool open = tracker->params.lids ? part >= LID_LEAST_PART : truth->event != GZ_EVENT_BLINK;
 	double spike_deg[2];
 	lose_eyes(tracker);
 	spike_offset(tracker, spike_deg);
 	for (int i = 0; i < GZ_EYE_COUNT; i++)
-		measure_eye(tracker, i, truth->point, spike_deg, open && !tracker->eye_lost[i],
-			    &sample->eye[i]);
+		measure_eye(tracker, i, truth->point, spike_deg, part,
+			    open && !tracker->eye_lost[i], &sample->eye[i]);
 	average_eyes(sample);
 	if (tracker->params.combined_only) {
 		struct gz_sample empty = gz_sample_unmeasured();

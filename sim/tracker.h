@@ -36,6 +36,9 @@ struct gz_sim_params {
 	double clock_offset_ms;   /**< device clock at the start, ms */
 	double clock_skew_ppm; /**< how much faster the device clock runs than the host's, parts per
 				  million */
+	bool lids;             /**< whether the tracker sees lids close and open: the pupil becomes
+				  smaller and its middle moves down before it is lost, as with a
+				  camera; else a blink is a loss without warning */
 	bool combined_only;    /**< whether to deliver one point for both eyes */
 	bool realtime;         /**< for the driver: deliver in real time, not as fast as it reads */
 	int display_px[2];

@@ -37,6 +37,7 @@ struct gz_viewer_truth {
 	double velocity_deg_s; /**< of the eyes, without tremor, degrees per second */
 	uint64_t fixation;     /**< number of the running or last fixation, from 0 */
 	bool microsaccade;     /**< whether a microsaccade is running; event is FIXATION */
+	double lid;            /**< how far the lid has come down, [0, 1]: 0 is open, 1 closed */
 };
 
 /** A saccade along a great circle. */

@@ -67,8 +67,9 @@ bool gz_labelled_recording_add(struct gz_labelled_recording *recording,
 	return true;
 }
 
+/* @param pupil_px  mean of its width and height in the eye camera's picture */
 static bool add_labelled(struct gz_labelled_recording *recording, double x_px, double y_px,
-			 int label)
+			 double pupil_px, int label)
 {
 	size_t i = recording->count;
 	struct gz_sample sample = gz_sample_unmeasured();
@@ -79,6 +80,8 @@ static bool add_labelled(struct gz_labelled_recording *recording, double x_px, d
 		sample.valid = true;
 		sample.point = (struct gz_point) { (float)(x_px / recording->display.px[0]),
 						   (float)(y_px / recording->display.px[1]) };
+		if (pupil_px > 0)
+			sample.eye[GZ_EYE_RIGHT].pupil_mm = (float)pupil_px;
 	}
 	return gz_labelled_recording_add(recording, &sample, label);
 }
@@ -101,7 +104,7 @@ bool gz_labelled_recording_read(const char *data, size_t recording, int coder,
 			continue;
 		good = sscanf(line, "%lf %lf %lf %lf %lf %d", &time_us, &pupil_h, &pupil_v, &x_px,
 			      &y_px, &label) == 6 &&
-		       add_labelled(out, x_px, y_px, label);
+		       add_labelled(out, x_px, y_px, (pupil_h + pupil_v) / 2, label);
 	}
 	gzclose(file);
 	return good && out->count > 0;

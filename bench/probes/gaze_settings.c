@@ -3,11 +3,13 @@
  * those of Andersson et al. as their first coder labelled them, and every tenth observer of
  * GazeCom. The forests know all of these recordings, so only differences count.
  *
- * usage: gaze_settings    (GAZECAST_DATA names the folder of recordings)
+ * usage: gaze_settings [rules]    (GAZECAST_DATA names the folder of recordings; rules: the labels
+ * come from the rules)
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
@@ -133,12 +135,12 @@ static bool differ(double figures[SETS][FIGURES], double preset[SETS][FIGURES])
 
 /* @return whether the setting changes a figure */
 static bool try_setting(const struct recordings *recordings, const struct gz_option *option,
-			double preset[SETS][FIGURES])
+			const struct gz_pipeline_params *presets, double preset[SETS][FIGURES])
 {
 	static const double factors[] = { 0.5, 2 };
 	bool changes = false;
 	for (int i = 0; i < 2; i++) {
-		struct gz_pipeline_params params = gz_pipeline_default_params();
+		struct gz_pipeline_params params = *presets;
 		double figures[SETS][FIGURES];
 		double *value = (double *)(void *)((char *)&params + option->offset);
 		*value = fmax(option->min, fmin(option->max, factors[i] * *value));
@@ -151,7 +153,7 @@ static bool try_setting(const struct recordings *recordings, const struct gz_opt
 	return changes;
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
 	static struct recordings recordings;
 	static const char *unchanging[128];
@@ -162,7 +164,9 @@ int main(void)
 		printf("GAZECAST_DATA is not set, or a recording is missing\n");
 		return SKIPPED;
 	}
-	const struct gz_pipeline_params params = gz_pipeline_default_params();
+	struct gz_pipeline_params params = gz_pipeline_default_params();
+	if (argc > 1 && strcmp(argv[1], "rules") == 0)
+		params.classify.source = GZ_CLASSIFY_RULES;
 	measure(&recordings, &params, preset);
 	printf("| setting | value | picture | dots | video | GazeCom "
 	       "|\n|---|---|---|---|---|---|\n");
@@ -170,7 +174,7 @@ int main(void)
 	for (size_t i = 0; i < gz_pipeline_option_count; i++) {
 		const struct gz_option *option = &gz_pipeline_options[i];
 		if (option->type == GZ_OPTION_DOUBLE && option->count <= 1 &&
-		    !try_setting(&recordings, option, preset) && unchanging_count < 128)
+		    !try_setting(&recordings, option, &params, preset) && unchanging_count < 128)
 			unchanging[unchanging_count++] = option->key;
 		fflush(stdout);
 	}

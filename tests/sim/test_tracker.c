@@ -217,6 +217,43 @@ static void blinks_measure_nothing(void **state)
 	gz_sim_tracker_destroy(&tracker);
 }
 
+/* With lids, a blink begins and ends with pupils that become smaller and points that sink; the
+ * truth is the same as without. */
+static void lids_cover_pupils_before_they_are_lost(void **state)
+{
+	(void)state;
+	struct gz_sim_params params = clean_params(1000);
+	params.viewer.blinks_per_min = 30;
+	struct gz_sim_tracker *plain = tracker_of(&params);
+	params.lids = true;
+	struct gz_sim_tracker *lids = tracker_of(&params);
+	int flanks = 0, hidden = 0;
+	for (int i = 0; i < 60000; i++) {
+		struct gz_sim_sample x, y;
+		gz_sim_tracker_next(plain, &x);
+		gz_sim_tracker_next(lids, &y);
+		assert_memory_equal(&x.truth.point, &y.truth.point, sizeof x.truth.point);
+		assert_int_equal(x.truth.event, y.truth.event);
+		assert_true(y.truth.lid >= 0 && y.truth.lid <= 1);
+		if (y.truth.event != GZ_EVENT_BLINK) {
+			assert_true(y.truth.lid == 0);
+			assert_memory_equal(&x.sample.eye, &y.sample.eye, sizeof x.sample.eye);
+			continue;
+		}
+		const struct gz_eye_sample *eye = &y.sample.eye[GZ_EYE_LEFT];
+		if (!eye->valid)
+			hidden++;
+		else if (eye->pupil_mm < 3.1F) {
+			flanks++;
+			assert_true(eye->point.y > y.truth.point.y + 0.05F);
+		}
+	}
+	CHECK_BETWEEN(hidden, 1000, 6000);
+	CHECK_BETWEEN(flanks, 300, 1500);
+	gz_sim_tracker_destroy(&plain);
+	gz_sim_tracker_destroy(&lids);
+}
+
 static void combined_only_measures_no_eye(void **state)
 {
 	(void)state;
@@ -352,6 +389,7 @@ TEST_SUITE(tracker)
 		cmocka_unit_test(lost_samples_are_the_wanted_part_and_counted),
 		cmocka_unit_test(noise_and_eye_loss_are_as_wanted),
 		cmocka_unit_test(blinks_measure_nothing),
+		cmocka_unit_test(lids_cover_pupils_before_they_are_lost),
 		cmocka_unit_test(combined_only_measures_no_eye),
 		cmocka_unit_test(calibration_moves_the_measurement_and_not_the_truth),
 		cmocka_unit_test(eyes_look_from_their_place_to_the_point),
