@@ -10,6 +10,10 @@
 /* Most steps that the mean of the noise takes into account. Chosen: seconds to minutes. */
 static const double NOISE_COUNT_MAX = 20000;
 
+/* How long a lid that closes holds the point. Chosen: until it hides the pupil, and less than what
+ * starts the smoothing again (GZ_SMOOTH_GAP_NS). */
+static const int64_t LID_HOLD_NS = 40 * GZ_NS_PER_MS;
+
 void gz_pipeline_init(struct gz_pipeline *pipeline, const struct gz_pipeline_params *params,
 		      const struct gz_display *display)
 {
@@ -305,8 +309,12 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 	measure_fixation_noise(pipeline, label.event, input.valid, out->gaze.raw);
 	bool hidden = label.event == GZ_EVENT_BLINK || label.event == GZ_EVENT_LOST;
 	out->gaze.confidence = input.valid && !hidden ? input.confidence : 0;
-	const struct gz_smooth_input smooth_input = { label.event, input.time_ns, input.valid,
-						      input.point };
+	/* While a lid closes, an eye that rested is where it was. When it opens, the point follows,
+	 * so that it does not jump in the fixation after that. */
+	bool closing = input.lid && input.time_ns - label.last_valid_ns <= LID_HOLD_NS &&
+		       pipeline->smooth.mode == GZ_EVENT_FIXATION;
+	const struct gz_smooth_input smooth_input = { label.event, input.time_ns,
+						      input.valid && !closing, input.point };
 	out->gaze.point =
 		gz_smooth_step(&pipeline->smooth, &params->smooth, display, &smooth_input);
 	pipeline->host_ns = sample->host_ns;
