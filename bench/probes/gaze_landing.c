@@ -32,6 +32,11 @@ static const double EARLY_MS = 16;
 /* Smaller and larger saccades are noise and lids. */
 static const double LEAST_DEG = 0.5, MOST_DEG = 35;
 
+/* Delay that is to be bridged, and the sizes of saccades of which 95 % are, in Wang, Woods, Costela
+ * and Luo, "Dynamic gaze-position prediction of saccadic eye movements using a Taylor series",
+ * Journal of Vision 17(14), 2017. */
+static const double AHEAD_MS = 10, AHEAD_LEAST_DEG = 1, AHEAD_MOST_DEG = 32;
+
 /* Longest time between samples, ms. */
 static const double INTERVAL_MOST_MS = 17;
 
@@ -70,6 +75,7 @@ struct row {
 	double now_deg;             /* from here to the landing place */
 	double size_deg;
 	double error_deg, error_ms, sigma_deg; /* of the prediction */
+	double ahead_now_deg, ahead_error_deg; /* see take_ahead(); NaN: not measured */
 	int observer;
 	enum set set;
 };
@@ -232,13 +238,48 @@ static bool read_tracks(const char *data, struct tracks *tracks)
 
 /* ---- rows ---- */
 
-static void take_row(const struct track *track, const struct truth *truth, int64_t time_ns,
+/* Where the eye is AHEAD_MS after sample @p i. @return false: not measured */
+static bool place_ahead(const struct track *track, size_t i, double out_deg[3])
+{
+	const int64_t time_ns = track->input[i].time_ns + (int64_t)(AHEAD_MS * GZ_NS_PER_MS);
+	while (i + 1 < track->count && track->input[i + 1].time_ns < time_ns)
+		i++;
+	const struct gz_landing_input *a = &track->input[i], *b = a + 1;
+	if (i + 1 >= track->count || !a->valid || !b->valid)
+		return false;
+	const float part = (float)(time_ns - a->time_ns) / (float)(b->time_ns - a->time_ns);
+	const struct gz_point point = { a->point.x + part * (b->point.x - a->point.x),
+					a->point.y + part * (b->point.y - a->point.y) };
+	gz_direction_deg(&track->display, point, out_deg);
+	return true;
+}
+
+/* How far the eye is from here after AHEAD_MS, and from where it would be with the present speed,
+ * no farther than to the landing place. So Wang et al. 2017 measure. */
+static void take_ahead(const struct track *track, size_t i, const double landing_deg[3],
+		       struct row *row)
+{
+	const struct gz_landing_look *look = &row->look;
+	double ahead_deg[3], place_deg[3];
+	row->ahead_now_deg = row->ahead_error_deg = NAN;
+	if (!place_ahead(track, i, ahead_deg))
+		return;
+	const double way_deg = fmin(look->speed_deg_s * AHEAD_MS * 1e-3,
+				    distance_deg(landing_deg, look->place_deg));
+	for (int k = 0; k < 3; k++)
+		place_deg[k] = look->place_deg[k] + way_deg * look->heading[k];
+	row->ahead_now_deg = distance_deg(ahead_deg, look->place_deg);
+	row->ahead_error_deg = distance_deg(ahead_deg, place_deg);
+}
+
+static void take_row(const struct track *track, const struct truth *truth, size_t i,
 		     const struct gz_landing_look *look, const struct gz_landing *landing,
 		     struct rows *rows)
 {
+	const int64_t time_ns = track->input[i].time_ns;
 	double way[3], predicted_deg[3];
-	for (int i = 0; i < 3; i++)
-		way[i] = truth->landing_deg[i] - look->place_deg[i];
+	for (int k = 0; k < 3; k++)
+		way[k] = truth->landing_deg[k] - look->place_deg[k];
 	gz_direction_deg(&track->display, landing->point, predicted_deg);
 	rows->row = grow(rows->row, rows->count, &rows->room, sizeof *rows->row);
 	rows->row[rows->count++] = (struct row) {
@@ -253,6 +294,7 @@ static void take_row(const struct track *track, const struct truth *truth, int64
 		.observer = track->observer,
 		.set = track->set,
 	};
+	take_ahead(track, i, predicted_deg, &rows->row[rows->count - 1]);
 }
 
 /* Predict in one track. Saccades that were noticed before they began do not count. */
@@ -270,8 +312,7 @@ static void predict_track(const struct track *track, const struct gz_landing_mod
 			t++;
 		if (landing.known && t < track->truth_count &&
 		    state.begin_ns >= track->truth[t].noticed_ns_least)
-			take_row(track, &track->truth[t], input->time_ns, &state.look, &landing,
-				 rows);
+			take_row(track, &track->truth[t], i, &state.look, &landing, rows);
 	}
 }
 
@@ -581,6 +622,24 @@ static void print_by_observer(const struct tracks *tracks, const struct rows *ro
 	}
 }
 
+/* The place of the eye AHEAD_MS later, mean of all samples of saccades. */
+static void print_ahead(const struct rows *rows)
+{
+	double now = 0, error = 0, count = 0;
+	for (size_t i = 0; i < rows->count; i++) {
+		const struct row *row = &rows->row[i];
+		if (isnan(row->ahead_now_deg) || row->size_deg < AHEAD_LEAST_DEG ||
+		    row->size_deg > AHEAD_MOST_DEG || gz_landing_is_slow(row->look.interval_ms))
+			continue;
+		now += row->ahead_now_deg;
+		error += row->ahead_error_deg;
+		count++;
+	}
+	printf("\nThe eye %.0f ms later, saccades of %.0f to %.0f degrees, 250 and 500 Hz, mean: "
+	       "from where it is now %.2f, from where it is thought to be %.2f degrees\n",
+	       AHEAD_MS, AHEAD_LEAST_DEG, AHEAD_MOST_DEG, now / count, error / count);
+}
+
 static struct rows predict_all(const struct tracks *tracks, const struct gz_landing_model *model)
 {
 	struct rows rows = { .count = 0 };
@@ -606,6 +665,7 @@ static void evaluate(const struct tracks *tracks, const struct rows *looks)
 	print_by_time(&rows, 1);
 	print_head("by person, 12 ms after it is seen");
 	print_by_observer(tracks, &rows);
+	print_ahead(&rows);
 	rows.count = 0;
 	for (int set = 0; set < SETS; set++) {
 		const struct gz_landing_model model = fit(looks, -1, set);
