@@ -5,12 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bench/clip/camera_path.h"
 #include "bench/comparison/comparison_measure.h"
 #include "bench/study/stage.h"
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
 
 #define GZ_LOG_MODULE "techniques"
+
+/* Counted frames of a method without a camera path. Chosen: once round the volume by the preset. */
+enum { FRAMES_WITHOUT_PATH = 6 };
 
 /* Places at which a transfer function is searched. Chosen: as many as a CT has values. */
 enum { TRANSFER_PLACES = 4096 };
@@ -23,6 +27,7 @@ struct running {
 	struct gz_stage stage;
 	struct gz_workers *workers;
 	struct gz_foveation *methods; /* of the scene */
+	struct gz_camera_path path;   /* of the scene; empty: the camera turns */
 };
 
 /* ---- what is asked ---- */
@@ -169,6 +174,43 @@ static struct gz_transfer opaque_from(double isovalue, const double range[2],
 	return transfer;
 }
 
+/* ---- the camera path ---- */
+
+/* How many frames a row has. All scenes have the same, because they share one path. */
+static enum gz_result count_frames(struct running *running)
+{
+	const struct gz_comparison_request *request = running->request;
+	const size_t recorded = running->path.count;
+	const size_t asked = (size_t)request->frames;
+	const size_t frames = asked > 0              ? asked
+			      : request->camera_path ? recorded
+						     : FRAMES_WITHOUT_PATH;
+	if (request->camera_path && frames > recorded)
+		gz_err(running->log, "%s has %zu cameras, fewer than the %zu frames asked for",
+		       request->camera_path, recorded, frames);
+	else if (frames > GZ_STUDY_FRAMES_MAX)
+		gz_err(running->log,
+		       "%s has %zu cameras, and a series at most %d frames; take some by --frames",
+		       request->camera_path, recorded, GZ_STUDY_FRAMES_MAX);
+	else {
+		running->comparison->frames = (int)frames;
+		return GZ_OK;
+	}
+	return GZ_ERR_INVAL;
+}
+
+/* Read the path for a scene: what its lines do not name is that of the scene's camera. */
+static enum gz_result read_path(struct running *running)
+{
+	const struct gz_camera *first = &running->stage.scene.settings.camera;
+	enum gz_result result = GZ_OK;
+	gz_camera_path_free(&running->path);
+	if (running->request->camera_path)
+		result = gz_camera_path_read(running->request->camera_path, first, running->log,
+					     &running->path);
+	return result == GZ_OK ? count_frames(running) : result;
+}
+
 /* ---- a scene ---- */
 
 static enum gz_result check_scene(const struct running *running)
@@ -291,6 +333,8 @@ static enum gz_result measure_scene(struct running *running, size_t index,
 		.list = list,
 		.methods = running->methods,
 		.method_count = comparison->method_count,
+		.frames = comparison->frames,
+		.cameras = running->path.cameras,
 		.scene = &comparison->scenes[index],
 		.surface_hash = hash,
 		.surface = &surface,
@@ -312,6 +356,8 @@ static enum gz_result compare_scene(struct running *running, size_t index)
 	enum gz_result result = gz_stage_load(&running->stage, running->request->scenes[index]);
 	if (result == GZ_OK)
 		result = check_scene(running);
+	if (result == GZ_OK)
+		result = read_path(running);
 	if (result == GZ_OK)
 		result = describe_scene(running, index);
 	if (result == GZ_OK)
@@ -349,9 +395,11 @@ static void describe_run(struct running *running)
 	struct gz_comparison *comparison = running->comparison;
 	comparison->width = request->width;
 	comparison->height = request->height;
-	comparison->frames = request->frames;
 	comparison->warm_up = request->warm_up;
 	comparison->turn_deg = request->turn_deg;
+	if (request->camera_path)
+		snprintf(comparison->camera_path, sizeof comparison->camera_path, "%s",
+			 request->camera_path);
 	gz_study_machine_describe(&comparison->machine);
 	snprintf(comparison->machine.program, sizeof comparison->machine.program, "%s",
 		 request->program);
@@ -387,6 +435,7 @@ enum gz_result gz_comparison_run(const struct gz_comparison_request *request,
 		result = compare_scene(&running, i);
 	gz_workers_destroy(&running.workers);
 	gz_stage_free(&running.stage);
+	gz_camera_path_free(&running.path);
 	free(running.methods);
 	if (result == GZ_OK)
 		*out_comparison = comparison;

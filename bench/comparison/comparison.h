@@ -20,17 +20,19 @@
 struct gz_comparison_request {
 	const char *const *scenes; /**< paths */
 	size_t scene_count;
-	const char *methods;    /**< beside standard: "acuity", as for gz_study_request */
-	const char *backends;   /**< "cpu,gl"; empty: all that run here */
-	const char *techniques; /**< "raycast,slices"; empty: all */
-	const char *effects;    /**< "none,shadow"; empty: all */
-	int width, height;      /**< px */
-	int frames, warm_up;    /**< of each method; warm_up at least 1 */
-	double turn_deg;        /**< that the camera turns from frame to frame */
-	double isovalue;        /**< of surfaces; NaN: gz_comparison_isovalue() */
-	bool errors;            /**< compare with the converged ray cast */
-	const char *cache;      /**< folder of converged pictures; NULL: they are not kept */
-	const char *pictures;   /**< folder for a picture of each series; NULL: none */
+	const char *methods;     /**< beside standard: "acuity", as for gz_study_request */
+	const char *backends;    /**< "cpu,gl"; empty: all that run here */
+	const char *techniques;  /**< "raycast,slices"; empty: all */
+	const char *effects;     /**< "none,shadow"; empty: all */
+	int width, height;       /**< px */
+	int frames;              /**< of each method; 0: as many as the camera path has, or 6 */
+	int warm_up;             /**< frames before those; at least 1 */
+	double turn_deg;         /**< that the camera turns a frame, without a camera path */
+	const char *camera_path; /**< file (bench/clip/camera_path.h); NULL: the camera turns */
+	double isovalue;         /**< of surfaces; NaN: gz_comparison_isovalue() */
+	bool errors;             /**< compare with the converged ray cast */
+	const char *cache;       /**< folder of converged pictures; NULL: they are not kept */
+	const char *pictures;    /**< folder for a picture of each series; NULL: none */
 	const char *program, *commit;
 };
 
@@ -108,7 +110,8 @@ struct gz_comparison {
 	char (*methods)[GZ_STUDY_TEXT_SIZE]; /**< the first is "standard" */
 	size_t method_count;
 	int width, height, frames, warm_up;
-	double turn_deg;
+	double turn_deg;                /**< of no meaning with a camera path */
+	char camera_path[GZ_PATH_SIZE]; /**< empty: the camera turns */
 	struct gz_study_machine machine;
 	struct gz_comparison_row *rows; /**< by scene, technique, backend, effect, slices, method */
 	size_t row_count;
@@ -125,13 +128,15 @@ enum gz_result gz_comparison_check(const struct gz_comparison_request *request,
  *
  * A series is a technique by a backend with an effect and, if it has slices, a number of them. Each
  * has a drawer of its own. In a round each method of each series renders a frame in turn; then the
- * camera turns. Gaze and plan are at the middle. Errors are those of one more picture from the
- * scene's camera.
+ * camera turns, or takes the next place of the camera path, at whose first it warms up. Gaze and
+ * plan are at the middle. Errors are those of one more picture from the scene's camera.
  *
  * @param[out] out_comparison  the caller's: gz_comparison_free()
+ * @retval GZ_ERR_INVAL        the camera path has fewer cameras than frames are asked for, or more
+ *                             than a row may have (GZ_STUDY_FRAMES_MAX); logged
  * @retval GZ_ERR_CANCELLED    SIGINT or SIGTERM has arrived; not logged
  * @retval GZ_ERR_UNSUPPORTED  a scene of meshes or bricks; logged
- * @return otherwise what loading scenes and drawing return; logged
+ * @return otherwise what loading scenes, reading the path and drawing return; logged
  */
 enum gz_result gz_comparison_run(const struct gz_comparison_request *request,
 				 const struct gz_log *log, struct gz_comparison *out_comparison);

@@ -85,13 +85,25 @@ static enum gz_result time_one_frame(struct timing *timing, size_t index,
 	return result;
 }
 
+/* The camera of a round from how it stood in the round before. Warm-up is at the first place of a
+ * path: what is prepared there is what the first counted frame needs. */
+static void move_camera(const struct gz_comparison_job *job, int round, bool first,
+			struct gz_camera *camera)
+{
+	if (job->cameras)
+		*camera = job->cameras[round > 0 ? round : 0];
+	else if (!first)
+		gz_camera_turn(camera, job->request->turn_deg);
+}
+
 /* What is prepared in warm-up frames and in the first counted one is done once. */
 static enum gz_result time_rounds(struct timing *timing)
 {
 	const struct gz_comparison_job *job = timing->job;
 	const int warm_up = job->request->warm_up > 0 ? job->request->warm_up : 1;
 	struct gz_camera camera = *job->stage->camera;
-	for (int round = -warm_up; round < job->request->frames; round++) {
+	for (int round = -warm_up; round < job->frames; round++) {
+		move_camera(job, round, round == -warm_up, &camera);
 		for (size_t i = 0; i < job->list->count * job->method_count; i++) {
 			struct gz_comparison_frame frame;
 			const enum gz_result result = time_one_frame(timing, i, &camera, &frame);
@@ -103,7 +115,6 @@ static enum gz_result time_rounds(struct timing *timing)
 			if (round >= 0)
 				job->rows[i].frames[round] = frame;
 		}
-		gz_camera_turn(&camera, job->request->turn_deg);
 	}
 	return GZ_OK;
 }

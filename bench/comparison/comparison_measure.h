@@ -16,6 +16,8 @@ struct gz_comparison_job {
 	struct gz_comparison_list *list;
 	const struct gz_foveation *methods; /**< as many as rows of a series */
 	size_t method_count;
+	int frames;                        /**< counted ones of a row */
+	const struct gz_camera *cameras;   /**< of each frame; NULL: the stage's camera turns */
 	struct gz_comparison_scene *scene; /**< reference_db is set */
 	const char *surface_hash;          /**< of the volume and @p surface */
 	const struct gz_transfer *surface; /**< opaque from the isovalue on */

@@ -25,6 +25,7 @@ struct settings {
 	char backend[LIST_SIZE], techniques[LIST_SIZE], effects[LIST_SIZE];
 	int frames, warm_up;
 	double turn_deg;
+	char camera_path[GZ_PATH_SIZE];
 	char isovalue[GZ_NAME_SIZE];
 	bool errors;
 	char cache[GZ_PATH_SIZE];
@@ -76,10 +77,11 @@ static const struct gz_option options[] = {
 	{ .key = "frames",
 	  .type = GZ_OPTION_INT,
 	  .offset = AT(frames),
-	  .min = 1,
+	  .min = 0,
 	  .max = GZ_STUDY_FRAMES_MAX,
-	  .preset = "6",
-	  .help = "counted frames of each method of each series" },
+	  .preset = "0",
+	  .help = "counted frames of each method of each series; 0 = as many as --camera-path has, "
+		  "or 6" },
 	{ .key = "warm-up",
 	  .type = GZ_OPTION_INT,
 	  .offset = AT(warm_up),
@@ -94,6 +96,13 @@ static const struct gz_option options[] = {
 	  .max = 180,
 	  .preset = "60",
 	  .help = "degrees that the camera turns a frame" },
+	{ .key = "camera-path",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(camera_path),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "file of a camera for each frame in place of turning: lines of eye x y z "
+		  "look_at x y z [up x y z [fov_deg]], or frames.tsv of a session" },
 	{ .key = "isovalue",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(isovalue),
@@ -196,6 +205,7 @@ static int run_techniques(int argc, char *const *argv, const struct gz_log *log)
 		.frames = settings.frames,
 		.warm_up = settings.warm_up,
 		.turn_deg = settings.turn_deg,
+		.camera_path = settings.camera_path[0] ? settings.camera_path : NULL,
 		.isovalue = isovalue,
 		.errors = settings.errors,
 		.cache = gz_reference_cache(settings.cache, cache),

@@ -291,19 +291,27 @@ static json_t *make_comparison_facts(const struct gz_comparison *comparison)
 	return facts;
 }
 
+static void set_frame_words(const struct gz_comparison *comparison, json_t *page)
+{
+	char moves[GZ_PATH_SIZE + 64], text[sizeof moves + GZ_NAMES_SIZE];
+	if (comparison->camera_path[0])
+		snprintf(moves, sizeof moves, "follows %s", comparison->camera_path);
+	else
+		snprintf(moves, sizeof moves, "turns by %.3g° a frame", comparison->turn_deg);
+	snprintf(text, sizeof text, "camera %s, %d×%d px, %d frames after %d that do not count",
+		 moves, comparison->width, comparison->height, comparison->frames,
+		 comparison->warm_up);
+	gz_page_set_text(page, "frame_words", text);
+}
+
 void gz_comparison_page_write(const struct gz_comparison *comparison,
 			      const struct gz_charts *charts, struct gz_text *out)
 {
 	json_t *page = gz_comparison_to_json(comparison);
-	char text[GZ_NAMES_SIZE];
 	gz_page_set_style(page);
 	gz_page_set_text(page, "title", "Techniques of volume rendering compared");
 	json_object_set_new(page, "no_charts", json_boolean(!charts->available));
-	snprintf(text, sizeof text,
-		 "camera turns by %.3g° a frame, %d×%d px, %d frames after %d that do not count",
-		 comparison->turn_deg, comparison->width, comparison->height, comparison->frames,
-		 comparison->warm_up);
-	gz_page_set_text(page, "frame_words", text);
+	set_frame_words(comparison, page);
 	for (size_t i = 0; i < comparison->scene_count; i++)
 		add_scene(comparison, i, charts, page);
 	json_object_set_new(page, "facts", make_comparison_facts(comparison));

@@ -154,10 +154,12 @@ json_t *gz_comparison_to_json(const struct gz_comparison *comparison)
 		json_array_append_new(rows, row_json(comparison, &comparison->rows[i]));
 	for (size_t i = 0; i < comparison->gap_count; i++)
 		json_array_append_new(gaps, gap_json(comparison, &comparison->gaps[i]));
-	return json_pack("{ss si s[ii] si si sf so so so so so so}", "format", GZ_COMPARISON_FORMAT,
-			 "version", GZ_COMPARISON_VERSION, "size", comparison->width,
-			 comparison->height, "frames", comparison->frames, "warm_up",
-			 comparison->warm_up, "turn_deg", comparison->turn_deg, "machine",
+	return json_pack("{ss si s[ii] si si so ss so so so so so so}", "format",
+			 GZ_COMPARISON_FORMAT, "version", GZ_COMPARISON_VERSION, "size",
+			 comparison->width, comparison->height, "frames", comparison->frames,
+			 "warm_up", comparison->warm_up, "turn_deg",
+			 number_json(comparison->camera_path[0] ? NAN : comparison->turn_deg),
+			 "camera_path", comparison->camera_path, "machine",
 			 machine_json(&comparison->machine), "scenes", scenes, "methods", methods,
 			 "rows", rows, "absent", gaps, "published", gz_published_times());
 }

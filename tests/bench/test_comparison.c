@@ -259,6 +259,63 @@ static void part_of_the_comparison_has_the_same_references(void **state)
 	gz_comparison_free(&comparison);
 }
 
+/* Of a path that stands still and of one that leaves the volume: what is seen costs rays' samples,
+ * and only places of the path are seen. */
+static void camera_path_gives_each_frame_its_camera(void **state)
+{
+	struct place *place = *state;
+	char scene[128], path[128];
+	snprintf(scene, sizeof scene, "%s/a.scene", place->path);
+	snprintf(path, sizeof path, "%s/flight.txt", place->path);
+	write_file(place, "flight.txt",
+		   "0 -2 0 0 0 0\n0 -9 0 0 -10 0 # away from it\n0 -2 0 0 0 0\n");
+	const char *const scenes[] = { scene };
+	const struct gz_comparison_request request = {
+		.scenes = scenes,
+		.scene_count = 1,
+		.methods = "",
+		.backends = "cpu",
+		.techniques = "raycast",
+		.effects = "none",
+		.width = 24,
+		.height = 24,
+		.warm_up = 2,
+		.turn_deg = 10,
+		.camera_path = path,
+		.isovalue = NAN,
+		.program = "test",
+		.commit = "unknown",
+	};
+	struct gz_comparison comparison;
+	assert_int_equal(gz_comparison_run(&request, NULL, &comparison), GZ_OK);
+	assert_int_equal(comparison.frames, 3);
+	const struct gz_comparison_row *row = find_row(&comparison, "raycast", "none", 0);
+	assert_non_null(row);
+	assert_true(row->frames[0].samples > 0);
+	assert_int_equal(row->frames[1].samples, 0);
+	assert_int_equal(row->frames[2].samples, row->frames[0].samples);
+	assert_int_equal(gz_comparison_write(&comparison, place->path, NULL), GZ_OK);
+	struct gz_text page = { 0 };
+	snprintf(path, sizeof path, "%s/report.html", place->path);
+	assert_int_equal(gz_text_add_file(&page, path), GZ_OK);
+	assert_non_null(strstr(page.bytes, "flight.txt"));
+	assert_null(strstr(page.bytes, "turns by"));
+	gz_text_free(&page);
+	gz_comparison_free(&comparison);
+}
+
+static void camera_path_that_is_too_short_or_missing_is_refused(void **state)
+{
+	struct place *place = *state;
+	write_file(place, "flight.txt", "0 -2 0 0 0 0\n");
+	place_run(place, (const char *[]) { "techniques", "a.scene", "--out", "s", "--frames=2",
+					    "--camera-path=flight.txt", NULL });
+	assert_said(place, 1, "flight.txt has 1 cameras, fewer than the 2 frames asked for");
+	place_run(place, (const char *[]) { "techniques", "a.scene", "--out", "s",
+					    "--camera-path=none.txt", NULL });
+	assert_said(place, 1, "none.txt");
+}
+
 static void calls_that_are_not_understood_are_refused(void **state)
 {
 	struct place *place = *state;
@@ -310,6 +367,8 @@ TEST_SUITE(comparison)
 		cmocka_unit_test(printed_times_are_those_of_the_papers),
 		IN_A_PLACE(comparison_measures_each_technique_and_writes_its_folder),
 		IN_A_PLACE(part_of_the_comparison_has_the_same_references),
+		IN_A_PLACE(camera_path_gives_each_frame_its_camera),
+		IN_A_PLACE(camera_path_that_is_too_short_or_missing_is_refused),
 		IN_A_PLACE(calls_that_are_not_understood_are_refused),
 		IN_A_PLACE(scene_with_meshes_is_refused),
 	};
