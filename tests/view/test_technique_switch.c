@@ -23,7 +23,7 @@ struct switching {
 	struct gz_frame_record record; /* of the last picture */
 };
 
-static void begin_switching(struct switching *all)
+static void create_switching(struct switching *all, const char *backend)
 {
 	static const char text[] = "[volume]\nprocedural = shells\ndims = 32 32 32\n"
 				   "[isosurface]\nisovalue = 90\n";
@@ -33,7 +33,7 @@ static void begin_switching(struct switching *all)
 	assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
 	close(file);
 	captured_log_init(&all->captured, "*:warn");
-	const char *const arguments[] = { "gazeview", "--headless", "--backend", "cpu",
+	const char *const arguments[] = { "gazeview", "--headless", "--backend", backend,
 					  "--size",   "64x48",      all->path,   NULL };
 	assert_int_equal(gz_view_options_read(7, (char *const *)arguments, NULL, &all->options),
 			 GZ_OK);
@@ -41,8 +41,13 @@ static void begin_switching(struct switching *all)
 	assert_int_equal(
 		gz_frame_maker_create(&all->options, &scene, NULL, &all->captured.log, &all->maker),
 		GZ_OK);
-	assert_int_equal(gz_frame_maker_start(all->maker, &all->options, NULL), GZ_OK);
 	all->settings = gz_frame_maker_scene(all->maker)->settings;
+}
+
+static void begin_switching(struct switching *all)
+{
+	create_switching(all, "cpu");
+	assert_int_equal(gz_frame_maker_start(all->maker, &all->options, NULL), GZ_OK);
 }
 
 static void end_switching(struct switching *all)
@@ -131,6 +136,54 @@ static void slices_are_refused_once_in_a_picture_on_cpu(void **state)
 	end_switching(&all);
 }
 
+/* A window without a GPU prepares its renderer of cpu on a thread. */
+static void slices_make_cpu_give_way_where_the_backend_may_be_chosen(void **state)
+{
+	(void)state;
+	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT];
+	struct switching all = { 0 };
+	const int slices = choice_of("slices");
+	const struct gz_backend_params params = { 0 };
+	const bool there = gz_techniques[slices - 1]->check("gl", &params, NULL) == GZ_OK;
+	create_switching(&all, "auto");
+	assert_int_equal(gz_frame_maker_start_cpu(all.maker, &all.options), GZ_OK);
+	gz_frame_maker_let_choose(all.maker, &all.options, NULL);
+	make_with(&all, 0, first);
+	assert_string_equal(gz_frame_backend(all.maker), "cpu");
+	make_with(&all, slices, second);
+	if (there) {
+		assert_string_equal(all.record.backend, "gl");
+		assert_memory_not_equal(first, second, sizeof first);
+		assert_int_equal(gz_frame_maker_scene(all.maker)->settings.technique, slices);
+	} else {
+		assert_non_null(strstr(all.captured.last, "slices: refused"));
+	}
+	if (gz_frame_takes_cpu(&all.options, NULL, NULL)) {
+		make_with(&all, choice_of("raycast"), second);
+		assert_string_equal(all.record.backend, "cpu");
+		assert_memory_equal(first, second, sizeof first);
+	}
+	end_switching(&all);
+}
+
+/* Who named cpu keeps it: as without a choice. */
+static void slices_are_refused_where_the_options_name_cpu(void **state)
+{
+	(void)state;
+	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT];
+	struct switching all = { 0 };
+	begin_switching(&all);
+	gz_frame_maker_let_choose(all.maker, &all.options, NULL);
+	make_with(&all, 0, first);
+	for (int i = 0; i < 2; i++) {
+		make_with(&all, choice_of("slices"), second);
+		assert_non_null(strstr(all.captured.last, "slices: refused"));
+		assert_memory_equal(first, second, sizeof first);
+		make_with(&all, 0, second);
+	}
+	end_switching(&all);
+}
+
 /* What a session of the window does while its isovalue moves and then rests. */
 static void triangles_are_made_beside_the_frames(void **state)
 {
@@ -177,6 +230,8 @@ TEST_SUITE(technique_switch)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(technique_follows_the_settings_and_a_refused_one_changes_nothing),
 		cmocka_unit_test(slices_are_refused_once_in_a_picture_on_cpu),
+		cmocka_unit_test(slices_make_cpu_give_way_where_the_backend_may_be_chosen),
+		cmocka_unit_test(slices_are_refused_where_the_options_name_cpu),
 		cmocka_unit_test(triangles_are_made_beside_the_frames),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -81,6 +81,37 @@ class Menus(WindowCase):
         self.find("exit")
         self.press_last("Return")
 
+    def choose_technique(self, row):
+        """Choose from the list of render.technique: 3 is slices, 1 raycast. The panel closes."""
+        self.find("technique")
+        self.press("Return")
+        self.click(410, 122)  # the list opens
+        self.click(300, 146 + 17 * row)
+        self.press("p")
+        self.move(SIZE[0] - 5, 40)
+
+    def test_window_on_cpu_shows_slices_and_then_rays_again(self):
+        keys = ("--gaze", "0.5,0.5", "--method", "standard", "--slices.count", "16")
+        wanted = {}
+        for technique in ("slices", "raycast"):
+            out = os.path.join(self.place.name, technique + ".png")
+            done = run(GAZEVIEW, SCENE, "--headless", "--size", "%dx%d" % SIZE, *keys,
+                       "--technique", technique, "--out", out, env=self.environment)
+            if technique == "slices" and "OpenGL" in done.stderr:
+                self.skipTest(done.stderr)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            wanted[technique] = read_png(out)
+        middle = (60, 55, 420, 250)
+        self.assertNotEqual(wanted["slices"].part(*middle), wanted["raycast"].part(*middle))
+        self.menu = "no"
+        self.start(*keys)
+        self.move(SIZE[0] - 5, 40)
+        for technique, row in (("slices", 3), ("raycast", 1)):
+            self.choose_technique(row)
+            self.until(lambda p: p.part(*middle) == wanted[technique].part(*middle), technique)
+        self.viewer.terminate()
+        self.assertNotIn("refused", self.messages())
+
     def test_picture_at_rest_and_saved_is_of_full_quality(self):
         self.refine = "yes"
         self.start_own_scene("--pictures", self.place.name, "--backend", "cpu")

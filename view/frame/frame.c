@@ -52,7 +52,11 @@ struct gz_frame_maker {
 	uint64_t data_revision;            /* of the scene's volume */
 	struct gz_picture_maker *pictures; /* NULL: not started */
 	struct gz_backend_params params;   /* of pictures */
-	struct gz_spare *spare;            /* NULL: none is made */
+	struct {
+		const struct gz_view_options *options; /* NULL: the renderer stays */
+		struct gz_gl_context *gl_context;
+	} choice;               /* gz_frame_maker_let_choose() */
+	struct gz_spare *spare; /* NULL: none is made */
 	struct next_labels labels;
 	uint64_t transfer_revision; /* of the scene's transfer function */
 	struct gz_attention attention;
@@ -272,6 +276,7 @@ static struct gz_backend_params backend_params(const struct gz_view_options *opt
 static enum gz_result start_pictures(struct gz_frame_maker *maker,
 				     const struct gz_picture_maker_params *params)
 {
+	maker->choice.options = NULL;
 	maker->params = params->backend_params;
 	enum gz_result r = gz_picture_maker_create(params, maker->log, &maker->pictures);
 	if (r == GZ_OK)
@@ -284,15 +289,21 @@ static enum gz_result start_pictures(struct gz_frame_maker *maker,
 	return r;
 }
 
-enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
-				    const struct gz_view_options *options,
-				    struct gz_gl_context *gl_context)
+static struct gz_picture_maker_params chosen_by_options(const struct gz_view_options *options,
+							struct gz_gl_context *gl_context)
 {
-	const struct gz_picture_maker_params params = {
+	return (struct gz_picture_maker_params) {
 		.backend = options->backend,
 		.backend_params = backend_params(options, gl_context),
 		.cpu_takes_over = true,
 	};
+}
+
+enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
+				    const struct gz_view_options *options,
+				    struct gz_gl_context *gl_context)
+{
+	const struct gz_picture_maker_params params = chosen_by_options(options, gl_context);
 	return start_pictures(maker, &params);
 }
 
@@ -304,6 +315,13 @@ enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
 		.backend_params = backend_params(options, NULL),
 	};
 	return start_pictures(maker, &params);
+}
+
+void gz_frame_maker_let_choose(struct gz_frame_maker *maker, const struct gz_view_options *options,
+			       struct gz_gl_context *gl_context)
+{
+	maker->choice.options = options;
+	maker->choice.gl_context = gl_context;
 }
 
 bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
@@ -850,6 +868,36 @@ static enum gz_result follow_objects(struct gz_frame_maker *maker,
 	return GZ_ERR_INVAL;
 }
 
+/* Replace a renderer of cpu by one whose backend the options choose, and which shows the objects.
+ * If that fails, the present one stays; logged. */
+static enum gz_result choose_pictures(struct gz_frame_maker *maker)
+{
+	const struct gz_view_options *options = maker->choice.options;
+	const struct gz_backend_params before = maker->params;
+	struct gz_picture_maker *cpu = maker->pictures;
+	const struct gz_picture_maker_params params =
+		chosen_by_options(options, maker->choice.gl_context);
+	drop_spares(maker);
+	maker->pictures = NULL;
+	const enum gz_result r = start_pictures(maker, &params);
+	if (r == GZ_OK) {
+		gz_picture_maker_destroy(&cpu);
+		return r;
+	}
+	maker->choice.options = options;
+	maker->pictures = cpu;
+	maker->params = before;
+	return r;
+}
+
+static enum gz_result show_by_technique(struct gz_frame_maker *maker)
+{
+	const bool may_choose =
+		maker->choice.options && strcmp(gz_frame_backend(maker), cpu_name) == 0;
+	return may_choose && !gz_frame_cpu_suffices(maker) ? choose_pictures(maker)
+							   : show_scene_objects(maker);
+}
+
 /* Draw by another technique if the settings ask for it. If that fails, the present one
  * stays. */
 static enum gz_result follow_technique(struct gz_frame_maker *maker, int technique)
@@ -862,7 +910,7 @@ static enum gz_result follow_technique(struct gz_frame_maker *maker, int techniq
 		return GZ_OK;
 	maker->refused_technique = 0;
 	*shown = technique;
-	if (show_scene_objects(maker) == GZ_OK)
+	if (show_by_technique(maker) == GZ_OK)
 		return GZ_OK;
 	maker->refused_technique = technique;
 	*shown = before;

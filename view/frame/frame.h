@@ -85,6 +85,18 @@ enum gz_result gz_frame_maker_start(struct gz_frame_maker *maker,
 enum gz_result gz_frame_maker_start_cpu(struct gz_frame_maker *maker,
 					const struct gz_view_options *options);
 
+/**
+ * Let the renderer of gz_frame_maker_start_cpu() make way for one of gz_frame_maker_start() once
+ * the settings ask for a technique that cpu does not draw. From then on each technique gets the
+ * backend that the options choose for it. Call it after the renderer is started, which withdraws
+ * it.
+ *
+ * @param options, gl_context  as for gz_frame_maker_start(); frames are made where the context may
+ *                             be used
+ */
+void gz_frame_maker_let_choose(struct gz_frame_maker *maker, const struct gz_view_options *options,
+			       struct gz_gl_context *gl_context);
+
 /** Whether gz_frame_maker_start() would choose the cpu backend, which any thread may create. */
 bool gz_frame_takes_cpu(const struct gz_view_options *options, struct gz_gl_context *gl_context,
 			const struct gz_log *log);

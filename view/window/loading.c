@@ -212,6 +212,8 @@ static void take_maker(struct gz_window *window, struct gz_frame_maker *maker, c
 		       const struct gz_scene_settings *settings)
 {
 	struct gz_window_loading *state = window->loading;
+	if (window->losses < GZ_WINDOW_LOSSES_TO_CPU)
+		gz_frame_maker_let_choose(maker, window->options, &window->context.base);
 	window->maker = maker;
 	window->settings = settings ? *settings : gz_frame_maker_scene(maker)->settings;
 	snprintf(state->path, sizeof state->path, "%s", path);
