@@ -90,7 +90,8 @@ enum gz_result gz_image_write_grey_png(const struct gz_image_rows *rows, const c
  *
  * @param[out] out_image  what it held is freed; zero-initialised is empty
  * @retval GZ_ERR_NOT_FOUND  the file cannot be opened; logged
- * @retval GZ_ERR_FORMAT     no PNG, damaged, or a side above GZ_IMAGE_SIDE_MAX; logged
+ * @retval GZ_ERR_FORMAT     no PNG, damaged, a side above GZ_IMAGE_SIDE_MAX, or more pixels than so
+ *                           few bytes hold; logged
  * @retval GZ_ERR_NO_MEM     logged
  */
 enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,

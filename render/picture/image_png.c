@@ -205,13 +205,30 @@ enum gz_result gz_image_write_grey_png(const struct gz_image_rows *rows, const c
 	return result;
 }
 
-static enum gz_result check_png_size(const png_image *png, const char *path,
+/* Most bytes that a byte of deflate unpacks to (RFC 1951: 258 of 2 bits). */
+#define UNPACKED_BYTES_MAX 1032
+
+/* Whether a file can hold as many pixels as it claims, of one bit at least, and a byte for the
+ * filter of each row: no memory is taken for more. What is no regular file may hold any. */
+static bool may_hold_pixels(const png_image *png, FILE *file)
+{
+	struct stat status;
+	const uint64_t least = (uint64_t)png->height * (1 + (png->width + 7) / 8);
+	return fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode) ||
+	       least <= (uint64_t)status.st_size * UNPACKED_BYTES_MAX;
+}
+
+static enum gz_result check_png_size(const png_image *png, FILE *file, const char *path,
 				     const struct gz_log *log)
 {
-	if (png->width <= GZ_IMAGE_SIDE_MAX && png->height <= GZ_IMAGE_SIDE_MAX)
+	if (png->width > GZ_IMAGE_SIDE_MAX || png->height > GZ_IMAGE_SIDE_MAX)
+		gz_err(log, "%s: %u x %u pixels; at most %d a side are read", path, png->width,
+		       png->height, GZ_IMAGE_SIDE_MAX);
+	else if (!may_hold_pixels(png, file))
+		gz_err(log, "%s: damaged PNG: the file is too short for %u x %u pixels", path,
+		       png->width, png->height);
+	else
 		return GZ_OK;
-	gz_err(log, "%s: %u x %u pixels; at most %d a side are read", path, png->width, png->height,
-	       GZ_IMAGE_SIDE_MAX);
 	return GZ_ERR_FORMAT;
 }
 
@@ -219,8 +236,6 @@ static enum gz_result read_pixels(png_image *png, const char *path, const struct
 				  struct gz_image *out_image)
 {
 	struct gz_image image = { 0 };
-	if (check_png_size(png, path, log) != GZ_OK)
-		return GZ_ERR_FORMAT;
 	if (gz_image_resize(&image, (int)png->width, (int)png->height) != GZ_OK) {
 		gz_err(log, "%s: no memory for %u x %u pixels", path, png->width, png->height);
 		return GZ_ERR_NO_MEM;
@@ -268,7 +283,9 @@ enum gz_result gz_image_read_png(const char *path, const struct gz_log *log,
 	if (result != GZ_OK)
 		return result;
 	png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB; /* else libpng takes 16 bits as linear */
-	result = read_pixels(&png, path, log, out_image);
+	result = check_png_size(&png, file, path, log);
+	if (result == GZ_OK)
+		result = read_pixels(&png, path, log, out_image);
 	png_image_free(&png);
 	fclose(file);
 	return result;
@@ -281,7 +298,7 @@ enum gz_result gz_image_measure_png(const char *path, const struct gz_log *log, 
 	enum gz_result result = begin_png(path, log, &png, &file);
 	if (result != GZ_OK)
 		return result;
-	result = check_png_size(&png, path, log);
+	result = check_png_size(&png, file, path, log);
 	if (result == GZ_OK) {
 		out_size[0] = (int)png.width;
 		out_size[1] = (int)png.height;

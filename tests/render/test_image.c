@@ -145,6 +145,24 @@ static void what_is_no_png_is_refused(void **state)
 	gz_image_free(&image);
 }
 
+/* A head of 16384 x 16384 pixels of one bit, and no pixels: with its sum, libpng believes it. */
+static void few_bytes_that_claim_many_pixels_take_no_memory(void **state)
+{
+	(void)state;
+	static const unsigned char claims[] =
+		"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0@\0\0\0@\0\1\0\0\0\0\x81\xb3\x2d\x29"
+		"\0\0\0\0IDAT\x35\xaf\x06\x1e";
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	struct gz_image back = { 0 };
+	int size[2];
+	const char *path = files_write("claims.png", (const char *)claims, sizeof claims - 1);
+	assert_int_equal(gz_image_read_png(path, &log.log, &back), GZ_ERR_FORMAT);
+	assert_non_null(strstr(log.last, "too short for 16384 x 16384 pixels"));
+	assert_int_equal(gz_image_measure_png(path, &log.log, size), GZ_ERR_FORMAT);
+	assert_null(back.pixels);
+}
+
 static void resample_to_the_same_size_changes_nothing(void **state)
 {
 	(void)state;
@@ -200,6 +218,7 @@ TEST_SUITE(image)
 		cmocka_unit_test(folder_that_is_not_there_is_refused),
 		cmocka_unit_test(writing_again_replaces_the_file_whole),
 		cmocka_unit_test(what_is_no_png_is_refused),
+		cmocka_unit_test(few_bytes_that_claim_many_pixels_take_no_memory),
 		cmocka_unit_test(resample_to_the_same_size_changes_nothing),
 		cmocka_unit_test(shrinking_averages_each_box),
 		cmocka_unit_test(growing_is_bilinear_between_centres),
