@@ -8,6 +8,7 @@
 #include "base/order.h"
 #include "base/vector.h"
 #include "render/particles/particle_cells.h"
+#include "render/particles/particle_series.h"
 
 #define GZ_LOG_MODULE "particles"
 
@@ -445,12 +446,67 @@ static enum gz_result find_radius_of_series(const struct gz_particle_request *re
 	return result;
 }
 
-enum gz_result gz_particle_volume_load(const char *path, const struct gz_particle_grid *grid,
-				       const struct gz_loading *loading, const struct gz_log *log,
-				       struct gz_volume *out_volume)
+static enum gz_result load_one_file(const struct gz_particle_request *request,
+				    const struct gz_particle_grid *grid,
+				    struct gz_volume *out_volume)
 {
 	struct gz_particle_grid of_series = *grid;
 	struct gz_particles particles;
+	enum gz_result result = gz_particles_load(request, &particles);
+	if (result != GZ_OK)
+		return result;
+	if (particles.time_point > 0 && !(grid->radius > 0))
+		result = find_radius_of_series(request, &of_series.radius);
+	if (result == GZ_OK)
+		result = gz_particles_to_volume(&particles, &of_series, request->path,
+						request->loading, request->log, out_volume);
+	gz_particles_free(&particles);
+	return result;
+}
+
+/* Load the file of a time point into the box of all. */
+static enum gz_result load_of_series(const struct gz_particle_series *series,
+				     const struct gz_particle_request *request,
+				     const struct gz_particle_grid *grid,
+				     const struct gz_particle_frame *frame,
+				     struct gz_volume *out_volume)
+{
+	struct gz_particle_grid of_series = *grid;
+	struct gz_particle_request own = *request;
+	struct gz_particles particles;
+	const int shown = request->time_point;
+	const int count = frame->count < (int)series->count ? frame->count : (int)series->count;
+	if (shown >= count) {
+		gz_err(request->log, "%s: has no time point %d; the series has %d", request->path,
+		       shown + 1, count);
+		return GZ_ERR_INVAL;
+	}
+	own.path = series->paths[shown];
+	own.time_point = 0;
+	enum gz_result result = gz_particles_load(&own, &particles);
+	if (result != GZ_OK)
+		return result;
+	particles.has_box = true;
+	memcpy(particles.box_least, frame->least, sizeof particles.box_least);
+	memcpy(particles.box_greatest, frame->greatest, sizeof particles.box_greatest);
+	memcpy(particles.value_range, frame->value_range, sizeof particles.value_range);
+	particles.time_points = frame->count;
+	particles.time_point = shown;
+	if (!(grid->radius > 0))
+		of_series.radius = frame->radius;
+	result = gz_particles_to_volume(&particles, &of_series, own.path, request->loading,
+					request->log, out_volume);
+	gz_particles_free(&particles);
+	return result;
+}
+
+enum gz_result gz_particle_volume_load(const char *path, const struct gz_particle_grid *grid,
+				       struct gz_particle_frame *frame,
+				       const struct gz_loading *loading, const struct gz_log *log,
+				       struct gz_volume *out_volume)
+{
+	struct gz_particle_frame found = frame ? *frame : (struct gz_particle_frame) { 0 };
+	struct gz_particle_series series;
 	const struct gz_particle_request request = {
 		.path = path,
 		.value = grid->value,
@@ -459,14 +515,17 @@ enum gz_result gz_particle_volume_load(const char *path, const struct gz_particl
 		.loading = loading,
 		.log = log,
 	};
-	enum gz_result result = gz_particles_load(&request, &particles);
+	enum gz_result result = gz_particle_series_find(path, &series);
 	if (result != GZ_OK)
-		return result;
-	if (particles.time_point > 0 && !(grid->radius > 0))
-		result = find_radius_of_series(&request, &of_series.radius);
+		gz_err(log, "%s: no memory to list the files of its series", path);
+	if (result == GZ_OK && series.count > 0 && found.count == 0)
+		result = gz_particle_series_measure(&series, grid->value, loading, log, &found);
 	if (result == GZ_OK)
-		result = gz_particles_to_volume(&particles, &of_series, path, loading, log,
-						out_volume);
-	gz_particles_free(&particles);
+		result = series.count > 0
+				 ? load_of_series(&series, &request, grid, &found, out_volume)
+				 : load_one_file(&request, grid, out_volume);
+	if (result == GZ_OK && frame)
+		*frame = found;
+	gz_particle_series_free(&series);
 	return result;
 }

@@ -56,6 +56,14 @@ struct gz_particle_grid {
 	int threads;      /**< 0: one per processor; else as for gz_workers_create() */
 };
 
+/** What the time points of a series of files share. Zero-initialised: not known. */
+struct gz_particle_frame {
+	int count;                    /**< time points; 0: not known */
+	double least[3], greatest[3]; /**< corners of the box of all particles */
+	double radius;                /**< of the first file's particles; 0: no two lie apart */
+	double value_range[2];        /**< least and greatest value */
+};
+
 /** Number of options of particles. */
 #define GZ_PARTICLE_GRID_OPTIONS 6
 
@@ -92,11 +100,15 @@ enum gz_result gz_particles_to_volume(const struct gz_particles *particles,
 
 /**
  * Load the particles of a file as a volume. All time points of a file have the radius that follows
- * from the first one, and the same grid.
+ * from the first one, and the same grid. The first of several numbered files stands for them all
+ * (render/particles/particle_series.h), a time point each.
  *
+ * @param[in,out] frame  of such a series: found, which reads all files, unless it is known from
+ *                       another time point; untouched for other files. NULL: found each time
  * @return what gz_particles_load() and gz_particles_to_volume() return
  */
 enum gz_result gz_particle_volume_load(const char *path, const struct gz_particle_grid *grid,
+				       struct gz_particle_frame *frame,
 				       const struct gz_loading *loading, const struct gz_log *log,
 				       struct gz_volume *out_volume);
 

@@ -27,6 +27,7 @@ struct scene_loader {
 	const struct gz_loading *loading;
 	const struct gz_log *log;
 	const struct gz_scene_settings *settings;
+	struct gz_particle_frame *particle_frame; /* NULL: not kept */
 };
 
 static enum gz_result find_named_file(const struct scene_loader *loader, const char *key,
@@ -101,8 +102,8 @@ static enum gz_result load_volume_file(const struct scene_loader *loader,
 	const struct gz_scene_object *object = gz_scene_volume_object(settings);
 	if ((object && object->particles[0]) ||
 	    (settings->dims[0] == 0 && gz_particle_format_of(path)))
-		return gz_particle_volume_load(path, &settings->particles, &loading, loader->log,
-					       out_volume);
+		return gz_particle_volume_load(path, &settings->particles, loader->particle_frame,
+					       &loading, loader->log, out_volume);
 	const enum gz_result loaded = gz_volume_load(path, settings->dims[0] > 0 ? &raw : NULL,
 						     &loading, loader->log, out_volume);
 	if (loaded == GZ_OK && out_volume->spacing_assumed)
@@ -425,7 +426,11 @@ enum gz_result gz_scene_load_time_point(const struct gz_scene_time_point *which,
 	struct gz_scene_settings settings = *which->settings;
 	struct gz_loading of_series = loading ? *loading : (struct gz_loading) { 0 };
 	const struct scene_loader loader = {
-		.name = which->name, .loading = &of_series, .log = log, .settings = &settings
+		.name = which->name,
+		.loading = &of_series,
+		.log = log,
+		.settings = &settings,
+		.particle_frame = &settings.particle_frame,
 	};
 	settings.time_point = which->time_point + 1;
 	of_series.number_range = which->number_range;
@@ -599,7 +604,11 @@ enum gz_result gz_scene_load_parts(const struct gz_scene_parts *parts,
 {
 	struct gz_scene scene = { .settings = *parts->settings, .has_display = parts->has_display };
 	const struct scene_loader loader = {
-		.name = parts->name, .loading = loading, .log = log, .settings = &scene.settings
+		.name = parts->name,
+		.loading = loading,
+		.log = log,
+		.settings = &scene.settings,
+		.particle_frame = &scene.settings.particle_frame,
 	};
 	const bool given = parts->transfer || gz_scene_transfer_name(&scene.settings)[0];
 	enum gz_result result = gz_scene_load_table(parts->name, log, &scene.settings.foveation);

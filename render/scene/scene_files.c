@@ -10,23 +10,27 @@
 #include "base/file.h"
 #include "base/ini.h"
 #include "base/text.h"
+#include "render/particles/particle_series.h"
 
 #define GZ_LOG_MODULE "scene"
 
 #define BLANKS " \t"
 
+/* Whether a file is there. A pattern of numbered files becomes the path of the first. */
+static bool is_there(char path[GZ_PATH_SIZE])
+{
+	return access(path, F_OK) == 0 || gz_particle_series_first(path, path);
+}
+
 enum gz_result gz_scene_find_file(const char *scene, const char *name, char out_path[GZ_PATH_SIZE])
 {
 	const char *data = getenv("GAZECAST_DATA");
-	if (gz_path_beside(scene, name, out_path, GZ_PATH_SIZE) == GZ_OK &&
-	    access(out_path, F_OK) == 0)
+	if (gz_path_beside(scene, name, out_path, GZ_PATH_SIZE) == GZ_OK && is_there(out_path))
 		return GZ_OK;
 	if (name[0] == '/' || !data || !*data)
 		return GZ_ERR_NOT_FOUND;
 	const int length = snprintf(out_path, GZ_PATH_SIZE, "%s/%s", data, name);
-	return length > 0 && length < GZ_PATH_SIZE && access(out_path, F_OK) == 0
-		       ? GZ_OK
-		       : GZ_ERR_NOT_FOUND;
+	return length > 0 && length < GZ_PATH_SIZE && is_there(out_path) ? GZ_OK : GZ_ERR_NOT_FOUND;
 }
 
 static bool is_same_file(const char *a, const char *b)

@@ -10,6 +10,7 @@
 #include "render/data/raw_guess.h"
 #include "render/mesh/mesh_file.h"
 #include "render/mesh/mesh_read.h"
+#include "render/particles/particle_series.h"
 #include "render/particles/particles.h"
 #include "render/scene/scene_picture.h"
 #include "render/transfer/content.h"
@@ -327,8 +328,8 @@ static enum gz_result open_picture(const struct gz_scene_request *request, const
 	return result;
 }
 
-enum gz_result gz_scene_open(const struct gz_scene_request *request, const struct gz_log *log,
-			     struct gz_scene *out_scene)
+static enum gz_result open_path(const struct gz_scene_request *request, const struct gz_log *log,
+				struct gz_scene *out_scene)
 {
 	/* Whoever gives a layout says what the content is. */
 	const enum gz_file_kind kind =
@@ -368,4 +369,14 @@ enum gz_result gz_scene_open(const struct gz_scene_request *request, const struc
 	gz_err(log, "%s: a %s shows nothing by itself; open a scene or a volume, then this",
 	       request->path, kind == GZ_FILE_TRANSFER ? "transfer function" : "gaze log");
 	return GZ_ERR_INVAL;
+}
+
+enum gz_result gz_scene_open(const struct gz_scene_request *request, const struct gz_log *log,
+			     struct gz_scene *out_scene)
+{
+	char first[GZ_PATH_SIZE];
+	struct gz_scene_request of_first = *request;
+	if (gz_particle_series_first(request->path, first))
+		of_first.path = first;
+	return open_path(&of_first, log, out_scene);
 }

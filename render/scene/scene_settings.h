@@ -51,13 +51,15 @@ struct gz_scene_settings {
 	int time_point;    /**< of a series, from 1 */
 	int memory_mib;    /**< for bricks; 0 = a quarter of the machine's memory */
 	struct gz_particle_grid particles; /**< how a file of particles becomes a volume */
-	struct gz_label_look labels;       /**< how labels become surfaces */
-	char transfer_file[GZ_PATH_SIZE];  /**< empty: the object's, or one made for the volume */
-	int transfer_preset;               /**< enum gz_transfer_preset + 1 of the one that is made;
-					      0: gz_transfer_preset_for() */
-	char transfer_also[GZ_PATH_SIZE];  /**< further ones for studies, separated by blanks */
-	struct gz_scene_objects objects;   /**< sections [object NAME] */
-	struct gz_scene_regions regions;   /**< sections [region NUMBER] */
+	/** Of a series of files that has been loaded. No key: found with the first time point. */
+	struct gz_particle_frame particle_frame;
+	struct gz_label_look labels;      /**< how labels become surfaces */
+	char transfer_file[GZ_PATH_SIZE]; /**< empty: the object's, or one made for the volume */
+	int transfer_preset;              /**< enum gz_transfer_preset + 1 of the one that is made;
+					     0: gz_transfer_preset_for() */
+	char transfer_also[GZ_PATH_SIZE]; /**< further ones for studies, separated by blanks */
+	struct gz_scene_objects objects;  /**< sections [object NAME] */
+	struct gz_scene_regions regions;  /**< sections [region NUMBER] */
 	struct gz_camera camera;
 	struct gz_ray_params rays;
 	int technique;              /**< of all objects: index into gz_techniques + 1; 0: each

@@ -10,6 +10,7 @@
 #include "base/captured_log.h"
 #include "render/particles/octree.h"
 #include "render/particles/particle_grid.h"
+#include "render/particles/particle_series.h"
 #include "volume_files.h"
 
 /* Marsaglia, "Xorshift RNGs", 2003. */
@@ -594,7 +595,7 @@ static void time_points_share_grid_and_range(void **state)
 				.number_range = step == 2 ? first.number_range : NULL,
 			};
 			assert_int_equal(
-				gz_particle_volume_load(path, &grid, &loading, NULL, &volume),
+				gz_particle_volume_load(path, &grid, NULL, &loading, NULL, &volume),
 				GZ_OK);
 			assert_int_equal(volume.time_points, STEPS);
 			assert_int_equal(volume.time_point, step);
@@ -615,6 +616,117 @@ static void time_points_share_grid_and_range(void **state)
 			    first.stored_max == (way / 2 ? 1 : 2) * greatest);
 		gz_volume_free(&first);
 	}
+}
+
+/* Two particles at x = 0 and x = number, whose density is the number. */
+static void write_numbered(const char *name, int number, const char *cut)
+{
+	char text[512];
+	const int length = snprintf(
+		text, sizeof text,
+		"ply\nformat ascii 1.0\nelement vertex %s\nproperty float x\nproperty float y\n"
+		"property float z\nproperty float density\nend_header\n0 0 0 %d\n%d 0.5 0.25 %d\n",
+		cut, number, number, number);
+	files_write(name, text, (size_t)length);
+}
+
+/* Numbers with a gap, and with as many digits as they need; beside them other names, and other
+ * content under a name of the series. */
+static void write_numbered_files(void)
+{
+	write_numbered("wave_8.ply", 8, "2");
+	write_numbered("wave_9.ply", 9, "2");
+	write_numbered("wave_010.ply", 10, "2");
+	write_numbered("wave_30.ply", 30, "2");
+	write_numbered("wave_9b.ply", 99, "2");
+	write_numbered("wave_.ply", 99, "2");
+	write_numbered("a_wave_31.ply", 99, "2");
+	files_write("wave_11.ply", "no particles", 12);
+}
+
+static void numbered_files_are_time_points_of_one_grid(void **state)
+{
+	static const double numbers[] = { 8, 9, 10, 30 };
+	struct gz_particle_grid grid = gz_particle_grid_preset();
+	struct gz_particle_frame frame = { 0 };
+	struct gz_volume first = { 0 }, volume;
+	char path[GZ_PATH_SIZE], pattern[GZ_PATH_SIZE];
+	(void)state;
+	write_numbered_files();
+	snprintf(pattern, sizeof pattern, "%s", files_path("wave_%04d.ply"));
+	assert_true(gz_particle_series_first(pattern, path));
+	assert_string_equal(path, files_path("wave_8.ply"));
+	assert_false(gz_particle_series_first(files_path("wave_8.ply"), pattern));
+	assert_false(gz_particle_series_first(files_path("none_%d.ply"), pattern));
+	grid.cells = 32;
+	grid.value = GZ_PARTICLE_DENSITY;
+	grid.gridding = GZ_GRIDDING_NEAREST;
+	for (int point = 0; point < 4; point++) {
+		const struct gz_loading loading = { .time_point = point };
+		assert_int_equal(
+			gz_particle_volume_load(path, &grid, &frame, &loading, NULL, &volume),
+			GZ_OK);
+		assert_int_equal(volume.time_points, 4);
+		assert_int_equal(volume.time_point, point);
+		const float *voxels = volume.voxels;
+		double greatest = 0;
+		for (size_t i = 0; i < gz_volume_voxel_count(&volume); i++)
+			greatest = fmax(greatest, (double)voxels[i]);
+		assert_true(greatest == numbers[point]);
+		assert_true(volume.stored_min == 0 && volume.stored_max == 30);
+		if (point == 0) {
+			first = volume;
+			continue;
+		}
+		assert_memory_equal(volume.dims, first.dims, sizeof first.dims);
+		assert_memory_equal(volume.spacing, first.spacing, sizeof first.spacing);
+		gz_volume_free(&volume);
+	}
+	assert_int_equal(frame.count, 4);
+	assert_true(frame.least[0] == 0 && frame.greatest[0] == 30 && frame.greatest[1] == 0.5);
+	const struct gz_loading beyond = { .time_point = 4 };
+	assert_int_equal(gz_particle_volume_load(path, &grid, &frame, &beyond, NULL, &volume),
+			 GZ_ERR_INVAL);
+	gz_volume_free(&first);
+}
+
+static void other_files_than_the_first_are_shown_alone(void **state)
+{
+	struct gz_particle_grid grid = gz_particle_grid_preset();
+	struct gz_particle_frame frame = { 0 };
+	struct gz_volume volume;
+	(void)state;
+	write_numbered_files();
+	grid.cells = 32;
+	for (int i = 0; i < 2; i++) {
+		const char *path = files_path(i ? "wave_9b.ply" : "wave_9.ply");
+		assert_int_equal(gz_particle_volume_load(path, &grid, &frame, NULL, NULL, &volume),
+				 GZ_OK);
+		assert_true(volume.time_points <= 1);
+		assert_int_equal(frame.count, 0);
+		gz_volume_free(&volume);
+	}
+}
+
+/* A simulation that still writes its last file. */
+static void series_ends_before_a_damaged_file(void **state)
+{
+	struct gz_particle_grid grid = gz_particle_grid_preset();
+	struct captured_log log;
+	struct gz_volume volume;
+	(void)state;
+	captured_log_init(&log, NULL);
+	write_numbered("rain.1.ply", 1, "2");
+	write_numbered("rain.2.ply", 2, "2");
+	write_numbered("rain.3.ply", 3, "2000");
+	write_numbered("rain.4.ply", 4, "2");
+	grid.cells = 32;
+	assert_int_equal(gz_particle_volume_load(files_path("rain.1.ply"), &grid, NULL, NULL,
+						 &log.log, &volume),
+			 GZ_OK);
+	assert_int_equal(volume.time_points, 2);
+	assert_non_null(strstr(log.last, "rain.3.ply: the series ends before this file"));
+	gz_volume_free(&volume);
 }
 
 /* The simulations had a radius of 0.025. */
@@ -659,6 +771,9 @@ TEST_SUITE(particle_grid)
 		cmocka_unit_test(radii_that_do_not_fit_are_told),
 		cmocka_unit_test(gridding_can_be_stopped),
 		cmocka_unit_test(time_points_share_grid_and_range),
+		cmocka_unit_test(numbered_files_are_time_points_of_one_grid),
+		cmocka_unit_test(other_files_than_the_first_are_shown_alone),
+		cmocka_unit_test(series_ends_before_a_damaged_file),
 		cmocka_unit_test(real_liquids_have_their_radius),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

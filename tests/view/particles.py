@@ -102,6 +102,26 @@ class Particles(unittest.TestCase):
         done = self.run_gazeview(path, "--time-point", "3", "--write-volume", self.path("b.nrrd"), status=1)
         self.assertIn("has no time point 3; it has 2", done.stderr)
 
+    def test_numbered_files_are_one_series(self):
+        self.write("b_09.xyz", xyz(cube()))
+        self.write("b_10.xyz", xyz(cube(shift=0.3)))
+        first, sizes = self.voxels(self.path("b_09.xyz"), "--particles.cells", "48")
+        second, same = self.voxels(self.path("b_%02d.xyz"), "--particles.cells", "48", "--time-point", "2")
+        alone, _ = self.voxels(self.path("b_10.xyz"), "--particles.cells", "48")
+        self.assertEqual(sizes, same)
+        self.assertNotEqual(first, second)
+        self.assertGreater(sum(alone), 1.2 * sum(second))  # its box is smaller, its voxels are more
+        scene = self.write("b.scene", b"[volume]\nfile = b_%d.xyz\ntime_point = 2\n[particles]\ncells = 48\n")
+        self.assertEqual(self.voxels("--scene", scene)[0], second)
+        done = self.run_gazeview(self.path("b_09.xyz"), "--time-point", "3", "--write-volume", self.path("c.nrrd"),
+                                 status=1)
+        self.assertIn("has no time point 3; the series has 2", done.stderr)
+        pictures = self.path("p%d.png")
+        self.run_gazeview("--headless", self.path("b_%d.xyz"), "--play", "10", "--frames", "2", "--fps", "10",
+                          "--size", "32x32", "--out", pictures)
+        with open(pictures % 0, "rb") as one, open(pictures % 1, "rb") as other:
+            self.assertNotEqual(one.read(), other.read())
+
     def test_one_line_refuses_a_lie(self):
         data = bytearray(liquid([cube()]))
         data[4:8] = b"\xff" * 4
