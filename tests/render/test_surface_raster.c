@@ -15,6 +15,7 @@
 #include "render/mesh/isosurface.h"
 #include "render/plan/method.h"
 #include "render/surface/cpu/surface_caster.h"
+#include "render/surface/gl/raster_clusters.h"
 #include "render/surface/gl/raster_programs.h"
 #include "render/surface/gl/surface_raster.h"
 #include "render/surface/isosurface_technique.h"
@@ -765,6 +766,118 @@ static void boxes_are_left_out_only_if_nothing_of_them_shows(void **state)
 	assert_true(in > 100 && out > 1000);
 }
 
+enum { CLUSTERED = 5000, CLUSTERED_SHARED = 700 };
+
+/* Small triangles all over a cube, of three vertices of their own. */
+static struct gz_mesh scattered_triangles(void)
+{
+	struct gz_mesh mesh;
+	uint32_t seed = 11;
+	assert_int_equal(gz_mesh_allocate(3 * CLUSTERED, CLUSTERED, &mesh), GZ_OK);
+	mesh.shared_count = CLUSTERED_SHARED;
+	for (uint32_t i = 0; i < CLUSTERED; i++) {
+		double middle[3], away[3];
+		random_place(&seed, 110, middle);
+		for (uint32_t k = 0; k < 3; k++) {
+			random_place(&seed, 4, away);
+			for (int axis = 0; axis < 3; axis++)
+				mesh.positions[3 * i + k][axis] =
+					(float)(middle[axis] + away[axis]);
+			mesh.triangles[i][k] = 3 * i + k;
+		}
+	}
+	return mesh;
+}
+
+/* Whether the view has a vertex on a point of the lattice's rectangle that it draws. */
+static bool vertex_shows(const struct gz_raster_view *view, const float place[3],
+			 const struct gz_raster_layer *lattice)
+{
+	double at[4];
+	bool hidden = true;
+	for (int row = 0; row < 4; row++)
+		at[row] = (double)view->rows[row][0] * (double)place[0] +
+			  (double)view->rows[row][1] * (double)place[1] +
+			  (double)view->rows[row][2] * (double)place[2] +
+			  (double)view->rows[row][3];
+	if (!(at[3] > 0 && fabs(at[2]) < at[3]))
+		return false;
+	for (int axis = 0; axis < 2; axis++) {
+		const double point = (at[axis] / at[3] - lattice->from[axis]) / lattice->spacing;
+		if (point < 0 || point > lattice->points[axis] - 1)
+			return false;
+		hidden = hidden && point > lattice->hidden[0][axis] &&
+			 point < lattice->hidden[1][axis] - 1;
+	}
+	return !hidden;
+}
+
+static void clusters_hold_each_triangle_once_and_are_drawn_where_they_show(void **state)
+{
+	(void)state;
+	static const struct gz_raster_box all = { { -60, -60, -60 }, { 60, 60, 60 } };
+	static const struct gz_raster_layer lattices[] = {
+		{ .from = { 0, 0 }, .spacing = 1, .points = { WIDTH, HEIGHT } },
+		{ .from = { 12, 8 }, .spacing = 2, .points = { 16, 12 } },
+		{ .from = { 0, 0 },
+		  .spacing = 2,
+		  .points = { WIDTH / 2, HEIGHT / 2 },
+		  .hidden = { { 6, 4 }, { WIDTH / 2 - 6, HEIGHT / 2 - 4 } } },
+	};
+	static uint32_t triangles[CLUSTERED][3];
+	static struct gz_raster_run runs[CLUSTERED];
+	static bool seen[CLUSTERED], drawn[CLUSTERED];
+	struct gz_mesh mesh = scattered_triangles();
+	struct gz_raster_clusters clusters;
+	struct stage stage = new_stage();
+	struct gz_ray_frame rays;
+	struct gz_raster_view view;
+	assert_int_equal(gz_raster_clusters_make(&mesh, triangles, &clusters), GZ_OK);
+	size_t corners = 0;
+	for (size_t i = 0; i < clusters.count; i++) {
+		const struct gz_raster_cluster *cluster = &clusters.items[i];
+		assert_int_equal(cluster->first, corners);
+		corners += cluster->corners;
+		for (size_t k = cluster->first / 3; k < corners / 3; k++) {
+			const uint32_t number = triangles[k][0] / 3;
+			assert_false(seen[number]);
+			seen[number] = true;
+			assert_memory_equal(triangles[k], mesh.triangles[number],
+					    sizeof triangles[k]);
+			assert_int_equal(number >= CLUSTERED - CLUSTERED_SHARED,
+					 i >= clusters.own_count);
+			for (int c = 0; c < 9; c++) {
+				const double x = (double)mesh.positions[triangles[k][c / 3]][c % 3];
+				assert_true(x >= cluster->box.least[c % 3] &&
+					    x <= cluster->box.greatest[c % 3]);
+			}
+		}
+	}
+	assert_int_equal(corners, 3 * CLUSTERED);
+	for (int i = 0; i < 6; i++) {
+		const struct gz_raster_layer *lattice = &lattices[i / 2];
+		size_t chosen = 0;
+		stage.camera.projection = (enum gz_projection)(i % 2);
+		assert_int_equal(gz_camera_rays(&stage.camera, WIDTH, HEIGHT, &rays), GZ_OK);
+		assert_true(gz_raster_view_make(&rays, 60, &all, &view));
+		memset(drawn, 0, sizeof drawn);
+		const size_t count = gz_raster_clusters_choose(&clusters, 0, clusters.count, &view,
+							       lattice, runs);
+		for (size_t run = 0; run < count; run++) {
+			chosen += runs[run].corners;
+			for (size_t k = 0; k < runs[run].corners; k += 3)
+				drawn[triangles[(runs[run].first + k) / 3][0] / 3] = true;
+		}
+		for (size_t v = 0; v < mesh.vertex_count; v++)
+			if (vertex_shows(&view, mesh.positions[v], lattice))
+				assert_true(drawn[v / 3]);
+		if (i >= 2)
+			assert_true(chosen < 3 * CLUSTERED * 3 / 4 && chosen > 0);
+	}
+	gz_raster_clusters_free(&clusters);
+	gz_mesh_free(&mesh);
+}
+
 static void unknown_backends_are_refused_with_one_line(void **state)
 {
 	(void)state;
@@ -811,6 +924,7 @@ TEST_SUITE(surface_raster)
 		cmocka_unit_test(drawer_of_gl_casts_the_hits_of_the_one_of_cpu),
 		cmocka_unit_test(points_on_rays_are_drawn_at_their_pixels),
 		cmocka_unit_test(boxes_are_left_out_only_if_nothing_of_them_shows),
+		cmocka_unit_test(clusters_hold_each_triangle_once_and_are_drawn_where_they_show),
 		cmocka_unit_test(unknown_backends_are_refused_with_one_line),
 		cmocka_unit_test(shaders_of_surfaces_are_valid_for_the_reference_compiler),
 	};

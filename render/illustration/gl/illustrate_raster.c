@@ -260,7 +260,7 @@ static void draw_illustrated(const struct illustrate_rastering *rastering, int l
 			continue;
 		glUniform3i(GZ_ILLUSTRATE_OBJECT, (GLint)mesh->id, (GLint)mesh->look,
 			    mesh->transparent);
-		gz_raster_mesh_draw_seen(&raster->meshes.items[i]);
+		gz_raster_mesh_draw_seen(&raster->meshes.items[i], &rastering->view, lattice);
 	}
 }
 

@@ -41,12 +41,34 @@ static void point_to_field(const struct gz_raster_field *field, size_t stride)
 	glEnableVertexAttribArray(field->location);
 }
 
-static void upload_mesh(struct gz_raster_mesh *item, const struct gz_mesh *mesh,
-			const struct gz_raster_vertices *vertices, const void *beside)
+/* Make the clusters of a mesh, and its triangles in their order: the caller's. NULL: no memory. */
+static uint32_t (*sort_into_clusters(const struct gz_mesh *mesh, struct gz_raster_mesh *item))[3]
+{
+	uint32_t(*triangles)[3] = malloc(triangle_bytes(mesh));
+	if (!triangles)
+		return NULL;
+	if (gz_raster_clusters_make(mesh, triangles, &item->clusters) == GZ_OK) {
+		const size_t count = item->clusters.count;
+		item->runs = malloc(count * sizeof *item->runs);
+		item->run_corners = malloc(count * sizeof *item->run_corners);
+		item->run_offsets = malloc(count * sizeof *item->run_offsets);
+		if (item->runs && item->run_corners && item->run_offsets)
+			return triangles;
+	}
+	free(triangles);
+	return NULL;
+}
+
+/* GZ_ERR_NO_MEM: no memory on the host. */
+static enum gz_result upload_mesh(struct gz_raster_mesh *item, const struct gz_mesh *mesh,
+				  const struct gz_raster_vertices *vertices, const void *beside)
 {
 	static const struct gz_raster_field position = { GZ_RASTER_POSITION, 3, GL_FLOAT, 0 };
 	if (mesh->triangle_count == 0)
-		return;
+		return GZ_OK;
+	uint32_t(*triangles)[3] = sort_into_clusters(mesh, item);
+	if (!triangles)
+		return GZ_ERR_NO_MEM;
 	glGenVertexArrays(1, &item->vertices);
 	glGenBuffers(BUFFERS, item->buffers);
 	glBindVertexArray(item->vertices);
@@ -58,11 +80,12 @@ static void upload_mesh(struct gz_raster_mesh *item, const struct gz_mesh *mesh,
 	for (int i = 0; i < vertices->count; i++)
 		point_to_field(&vertices->fields[i], vertices->stride);
 	upload_buffer(GL_ELEMENT_ARRAY_BUFFER, item->buffers[TRIANGLES], triangle_bytes(mesh),
-		      mesh->triangles);
+		      triangles);
 	glBindVertexArray(0);
 	glBindBuffer(GL_ARRAY_BUFFER, 0);
 	item->corners = (int)(3 * mesh->triangle_count);
-	item->own_corners = (int)(3 * (mesh->triangle_count - mesh->shared_count));
+	free(triangles);
+	return GZ_OK;
 }
 
 /* The box around the vertices of a mesh. Those of no triangle, which files may have, count too. */
@@ -115,13 +138,14 @@ enum gz_result gz_raster_meshes_upload(struct gz_raster_meshes *meshes,
 	if (!meshes->items)
 		return GZ_ERR_NO_MEM;
 	meshes->count = listed->count;
-	for (size_t i = 0; i < listed->count; i++) {
+	for (size_t i = 0; i < listed->count && result == GZ_OK; i++) {
 		meshes->items[i].id = listed->items[i].object.id;
 		meshes->items[i].box = find_box(&listed->shown[i]);
-		upload_mesh(&meshes->items[i], &listed->shown[i], vertices,
-			    vertices->data ? vertices->data[i] : listed->shown[i].normals);
+		result = upload_mesh(&meshes->items[i], &listed->shown[i], vertices,
+				     vertices->data ? vertices->data[i] : listed->shown[i].normals);
 	}
-	result = gz_gl_device_errors(device);
+	if (result == GZ_OK)
+		result = gz_gl_device_errors(device);
 	if (result != GZ_OK) {
 		gz_err(log,
 		       "the graphics device does not take %zu triangles: %s; take --backend cpu",
@@ -148,16 +172,31 @@ void gz_raster_meshes_draw(const struct gz_raster_meshes *meshes)
 	}
 }
 
-/* Row 0 is on top, so the picture is mirrored for OpenGL: fronts are clockwise. */
-static void draw_shared(const struct gz_raster_mesh *mesh)
+/* Draw what a lattice may show of the clusters [from, to). */
+static void draw_clusters(const struct gz_raster_mesh *mesh, size_t from, size_t to,
+			  const struct gz_raster_view *view, const struct gz_raster_layer *lattice)
 {
-	const size_t first = (size_t)mesh->own_corners * sizeof(uint32_t);
-	if (mesh->own_corners == mesh->corners)
+	const size_t count =
+		gz_raster_clusters_choose(&mesh->clusters, from, to, view, lattice, mesh->runs);
+	for (size_t i = 0; i < count; i++) {
+		mesh->run_corners[i] = (int)mesh->runs[i].corners;
+		mesh->run_offsets[i] = (const void *)(mesh->runs[i].first * sizeof(uint32_t));
+	}
+	if (count > 0)
+		glMultiDrawElements(GL_TRIANGLES, mesh->run_corners, GL_UNSIGNED_INT,
+				    (const GLvoid *const *)mesh->run_offsets, (GLsizei)count);
+}
+
+/* Row 0 is on top, so the picture is mirrored for OpenGL: fronts are clockwise. */
+static void draw_shared(const struct gz_raster_mesh *mesh, const struct gz_raster_view *view,
+			const struct gz_raster_layer *lattice)
+{
+	const struct gz_raster_clusters *clusters = &mesh->clusters;
+	if (clusters->own_count == clusters->count)
 		return;
 	glEnable(GL_CULL_FACE);
 	glFrontFace(GL_CW);
-	glDrawElements(GL_TRIANGLES, mesh->corners - mesh->own_corners, GL_UNSIGNED_INT,
-		       (const void *)first);
+	draw_clusters(mesh, clusters->own_count, clusters->count, view, lattice);
 	glFrontFace(GL_CCW);
 	glDisable(GL_CULL_FACE);
 }
@@ -173,11 +212,12 @@ bool gz_raster_mesh_in_view(const struct gz_raster_mesh *mesh, const struct gz_r
 	return mesh->vertices && gz_raster_view_shows(view, &mesh->box, from, to);
 }
 
-void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh)
+void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh, const struct gz_raster_view *view,
+			      const struct gz_raster_layer *lattice)
 {
 	glBindVertexArray(mesh->vertices);
-	glDrawElements(GL_TRIANGLES, mesh->own_corners, GL_UNSIGNED_INT, NULL);
-	draw_shared(mesh);
+	draw_clusters(mesh, 0, mesh->clusters.own_count, view, lattice);
+	draw_shared(mesh, view, lattice);
 }
 
 void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
@@ -195,7 +235,7 @@ void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,
 		gz_surface_colour(&listed->items[i], look, colour);
 		glUniform1ui(locations.id, mesh->id);
 		glUniform3fv(locations.colour, 1, colour);
-		gz_raster_mesh_draw_seen(mesh);
+		gz_raster_mesh_draw_seen(mesh, view, lattice);
 	}
 }
 
@@ -212,6 +252,12 @@ void gz_raster_meshes_free(struct gz_raster_meshes *meshes)
 
 void gz_raster_meshes_forget(struct gz_raster_meshes *meshes)
 {
+	for (size_t i = 0; i < meshes->count; i++) {
+		gz_raster_clusters_free(&meshes->items[i].clusters);
+		free(meshes->items[i].runs);
+		free(meshes->items[i].run_corners);
+		free(meshes->items[i].run_offsets);
+	}
 	free(meshes->items);
 	*meshes = (struct gz_raster_meshes) { .serial = meshes->serial };
 }

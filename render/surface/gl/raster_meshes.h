@@ -14,6 +14,7 @@
 #include "base/result.h"
 #include "render/layers/raster_layers.h"
 #include "render/opengl/gl_device.h"
+#include "render/surface/gl/raster_clusters.h"
 #include "render/surface/gl/raster_view.h"
 #include "render/surface/shared/surface_frame.h"
 #include "render/surface/shared/surface_meshes.h"
@@ -39,10 +40,14 @@ struct gz_raster_vertices {
 
 /** One mesh; OpenGL's names. */
 struct gz_raster_mesh {
-	unsigned vertices;        /**< vertex array; 0: the mesh has no triangles */
-	unsigned buffers[3];      /**< positions, what is beside them, triangles */
-	int corners;              /**< three a triangle */
-	int own_corners;          /**< of triangles that no neighbour has too; they come first */
+	unsigned vertices;   /**< vertex array; 0: the mesh has no triangles */
+	unsigned buffers[3]; /**< positions, what is beside them, triangles */
+	int corners;         /**< three a triangle */
+	struct gz_raster_clusters clusters;
+	struct gz_raster_run *runs; /**< room for as many as there are clusters */
+	/** Room for as many, as OpenGL takes them: how many corners, and from which byte on. */
+	int *run_corners;
+	const void **run_offsets;
 	uint32_t id;              /**< of the object */
 	struct gz_raster_box box; /**< around its vertices */
 };
@@ -81,9 +86,10 @@ struct gz_raster_locations {
 bool gz_raster_mesh_in_view(const struct gz_raster_mesh *mesh, const struct gz_raster_view *view,
 			    const struct gz_raster_layer *lattice);
 
-/** Draw what an eye sees of a mesh that has triangles: those that two neighbours share only from
- * the front, because both lie at the same place. */
-void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh);
+/** Draw what an eye may see on a lattice of a mesh that has triangles: those that two neighbours
+ *  share only from the front, because both lie at the same place. */
+void gz_raster_mesh_draw_seen(const struct gz_raster_mesh *mesh, const struct gz_raster_view *view,
+			      const struct gz_raster_layer *lattice);
 
 /** Draw what an eye sees of all meshes on a lattice. Sets each object's id and colour. */
 void gz_raster_meshes_draw_seen(const struct gz_raster_meshes *meshes,

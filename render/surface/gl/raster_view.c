@@ -123,6 +123,20 @@ bool gz_raster_view_shows(const struct gz_raster_view *view, const struct gz_ras
 	return shows;
 }
 
+bool gz_raster_view_holds(const struct gz_raster_view *view, const struct gz_raster_box *box,
+			  const double from[2], const double to[2])
+{
+	bool holds = true;
+	for (int i = 0; i < 8; i++) {
+		double place[3], insides[SIDES];
+		corner_of(box, i, place);
+		find_insides(view, place, from, to, insides);
+		for (int side = 0; side < SIDES; side++)
+			holds = holds && insides[side] > 0;
+	}
+	return holds;
+}
+
 struct gz_raster_shadow gz_raster_shadow_make(const float towards[3],
 					      const struct gz_raster_box *box, int edge)
 {

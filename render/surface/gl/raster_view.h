@@ -40,6 +40,11 @@ bool gz_raster_view_make(const struct gz_ray_frame *rays, double world_mm,
 bool gz_raster_view_shows(const struct gz_raster_view *view, const struct gz_raster_box *box,
 			  const double from[2], const double to[2]);
 
+/** Whether all of a box lies in a rectangle of the picture, and in front of the eye. @param from,
+ * to pixels */
+bool gz_raster_view_holds(const struct gz_raster_view *view, const struct gz_raster_box *box,
+			  const double from[2], const double to[2]);
+
 /** A shadow map: the box seen by a distant light. A point times the rows is its place in the map,
  *  [0, 1] along x and y, and its depth, 0 nearest to the light and 1 farthest. */
 struct gz_raster_shadow {
