@@ -15,6 +15,7 @@ import gzip
 import os
 import re
 import shlex
+import shutil
 import struct
 import subprocess
 import sys
@@ -126,6 +127,13 @@ def link_data(name):
     return link
 
 
+def copy_series(path):
+    """Two files of particles, of which the page names the first."""
+    for frame, name in (("9_6859", path), ("23_24389", path.replace("0001", "0002"))):
+        if DATA:
+            shutil.copyfile(os.path.join(DATA, "particles/dam_break_frame_%s_particles.bgeo" % frame), name)
+
+
 def write_eyelink(path):
     """Half a second of one eye, as edf2asc writes it."""
     with open(path, "w", encoding="ascii") as out:
@@ -170,6 +178,7 @@ SAMPLES = {
     "big.scene": own_scene("head.nrrd"), "nova.scene": own_scene("head.nrrd"),
     "bricks.scene": own_scene("nova.gzb"),
     "dam_break.bgeo": link_data("particles/dam_break_frame_9_6859_particles.bgeo"),
+    "water_0001.bgeo": copy_series,
     "bonsai_256x256x256_uint8.raw.zst": link_data("volumes/bonsai_256x256x256_uint8.raw.zst"),
     "session.gzl": write_recording, "day.gzl": write_recording,
     "pilot.csv": write_table, "subject7.asc": write_eyelink, "walk.session": write_session,
