@@ -135,7 +135,8 @@ else()
 endif()
 math(EXPR gz_test_timeout_s "10 * ${gz_test_patience_s}")
 
-set(gz_test_environment "GZ_TEST_PATIENCE_S=${gz_test_patience_s}")
+# What tests make of meshes is not kept in the folder of who runs them.
+set(gz_test_environment "GZ_TEST_PATIENCE_S=${gz_test_patience_s}" "XDG_CACHE_HOME=${PROJECT_BINARY_DIR}/tests/cache")
 if(GAZECAST_SANITIZE MATCHES thread)
 	list(APPEND gz_test_environment "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/tsan.supp:die_after_fork=0")
 endif()

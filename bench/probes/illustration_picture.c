@@ -104,7 +104,8 @@ static enum gz_result resolve_settings(const struct picture_request *request,
 static enum gz_result set_up_stage(const struct picture_request *request, const char *path,
 				   const struct gz_log *log, struct picture_stage *stage)
 {
-	const struct gz_backend_params params = { .threads = request->threads };
+	const struct gz_backend_params params = { .threads = request->threads,
+						  .wait_for_bricks = true };
 	enum gz_result result = gz_scene_load(path, NULL, log, &stage->scene);
 	if (result == GZ_OK)
 		result = resolve_settings(request, &stage->look.single);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/clock.h"
 #include "render/frame/drawers.h"
@@ -375,13 +376,27 @@ enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
 		       : GZ_ERR_INVAL;
 }
 
+/* Make a picture again until nothing that it lacks is being made any more. */
+static enum gz_result make_whole(struct gz_picture_maker *maker,
+				 const struct gz_picture_request *request)
+{
+	static const struct timespec pause = { .tv_nsec = 10 * 1000 * 1000 };
+	struct gz_image *image;
+	struct gz_picture_cost cost = { 0 };
+	enum gz_result result = gz_picture_make(maker, request, &image, &cost);
+	while (result == GZ_OK && cost.stats.bricks_coming > 0) {
+		(void)nanosleep(&pause, NULL);
+		result = gz_picture_make(maker, request, &image, &cost);
+	}
+	return result;
+}
+
 enum gz_result gz_picture_print(struct gz_picture_maker *maker,
 				const struct gz_picture_request *request,
 				const struct gz_print *print)
 {
 	const struct gz_foveation full = gz_foveation_full();
 	struct gz_picture_request whole = *request;
-	struct gz_image *image;
 	struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
 	if (!drawer)
 		return GZ_ERR_INVAL;
@@ -397,7 +412,7 @@ enum gz_result gz_picture_print(struct gz_picture_maker *maker,
 	whole.temporal = NULL;
 	whole.on_device = false;
 	whole.strip.rows = 0;
-	const enum gz_result result = gz_picture_make(maker, &whole, &image, NULL);
+	const enum gz_result result = make_whole(maker, &whole);
 	return result == GZ_OK ? drawer->ops->print(drawer, print) : result;
 }
 

@@ -5,16 +5,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Numbers of triangles are kept as floats, which are exact up to this. */
-#define TRIANGLES_MAX ((size_t)1 << 24)
+#include "render/illustration/kept_numbers.h"
 
 /* Floats of a point: its triangle, across[0] and across[1]. */
-enum { POINT_FLOATS = 3, AREA_FLOATS = 3 };
+enum { POINT_FLOATS = 3 };
 
 /* What a file holds. Another way to spread points needs another number in the purpose. */
 struct kept_points {
 	float *points;
-	float area[AREA_FLOATS]; /* whose sum is the area, bit for bit */
+	float area[GZ_KEPT_DOUBLE_FLOATS];
 	struct gz_mesh_cache_array arrays[2];
 };
 
@@ -22,17 +21,13 @@ static bool allocate_kept(size_t count, struct kept_points *kept)
 {
 	kept->points = malloc(POINT_FLOATS * count * sizeof *kept->points);
 	kept->arrays[0] = (struct gz_mesh_cache_array) { kept->points, POINT_FLOATS * count };
-	kept->arrays[1] = (struct gz_mesh_cache_array) { kept->area, AREA_FLOATS };
+	kept->arrays[1] = (struct gz_mesh_cache_array) { kept->area, GZ_KEPT_DOUBLE_FLOATS };
 	return kept->points != NULL;
 }
 
 static void keep_points(const struct gz_mesh_points *points, struct kept_points *kept)
 {
-	double rest = points->area_mm2;
-	for (int i = 0; i < AREA_FLOATS; i++) {
-		kept->area[i] = (float)rest;
-		rest -= (double)kept->area[i];
-	}
+	gz_keep_double(points->area_mm2, kept->area);
 	for (size_t i = 0; i < points->count; i++) {
 		float *floats = kept->points + POINT_FLOATS * i;
 		floats[0] = (float)points->points[i].triangle;
@@ -56,13 +51,11 @@ static bool read_point(const struct gz_mesh *mesh, const float floats[POINT_FLOA
 static bool read_kept(const struct gz_mesh *mesh, size_t count, const struct kept_points *kept,
 		      struct gz_mesh_points *out_points)
 {
-	struct gz_mesh_points points = { .count = count };
+	struct gz_mesh_points points = { .count = count, .area_mm2 = gz_kept_double(kept->area) };
 	bool good = true;
 	points.points = malloc(count * sizeof *points.points);
 	if (!points.points)
 		return false;
-	for (int i = AREA_FLOATS - 1; i >= 0; i--)
-		points.area_mm2 += (double)kept->area[i];
 	for (size_t i = 0; i < count && good; i++)
 		good = read_point(mesh, kept->points + POINT_FLOATS * i, &points.points[i]);
 	if (good)
@@ -82,7 +75,8 @@ enum gz_result gz_cached_points_make(const struct gz_mesh *mesh, size_t count,
 	char purpose[64];
 	snprintf(purpose, sizeof purpose, "mesh points 1, %zu", count);
 	const bool keeps = place && count > 0 && count <= GZ_MESH_POINTS_MAX &&
-			   mesh->triangle_count <= TRIANGLES_MAX && allocate_kept(count, &kept) &&
+			   mesh->triangle_count <= GZ_KEPT_WHOLE_MAX &&
+			   allocate_kept(count, &kept) &&
 			   gz_mesh_key_make(mesh, purpose, &key) == GZ_OK;
 	enum gz_result result = GZ_OK;
 	if (!keeps || gz_mesh_cache_load(place, &key, kept.arrays, 2, log) != GZ_OK ||

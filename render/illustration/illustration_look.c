@@ -14,6 +14,13 @@ static const char *const show_names[] = {
 /* In the order of enum gz_illustration_drawing. */
 static const char *const drawing_names[] = { "grey", "stipples", "hatches", NULL };
 
+/* In the order of enum gz_hatch_direction. */
+static const char *const direction_names[] = { "along", "around", NULL };
+
+const char *const gz_illustration_said_drawings[] = { "scene", "grey", "stipples", "hatches",
+						      NULL };
+const char *const gz_illustration_said_directions[] = { "scene", "along", "around", NULL };
+
 #define AT(field) offsetof(struct gz_illustration_look, field)
 
 const struct gz_option gz_illustration_look_options[] = {
@@ -23,6 +30,9 @@ const struct gz_option gz_illustration_look_options[] = {
 	{ "illustration.drawing", GZ_OPTION_CHOICE, AT(drawing), .choices = drawing_names,
 	  .preset = "grey",
 	  .help = "how the shading map is drawn: as grey, by points, or by strokes" },
+	{ "illustration.hatch_direction", GZ_OPTION_CHOICE, AT(hatch_direction),
+	  .choices = direction_names, .preset = "along",
+	  .help = "hatches: strokes run along tubes and ridges, or around them" },
 	{ "illustration.pen_width", GZ_OPTION_DOUBLE, AT(pen_width), 0.5, 64, .preset = "2",
 	  .help = "stipples, hatches: width of strokes and diameter of points where one looks, "
 		  "px" },
@@ -75,9 +85,11 @@ bool gz_illustration_look_same(const struct gz_illustration_look *a,
 	       gz_options_same(gz_shading_options, gz_shading_option_count, &a->single, &b->single);
 }
 
-enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illustration_look *look)
+enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illustration_look *look,
+							  int said)
 {
-	return look->show == GZ_SHOW_SHADING ? (enum gz_illustration_drawing)look->drawing
+	const int drawing = said > 0 ? said - 1 : look->drawing;
+	return look->show == GZ_SHOW_SHADING ? (enum gz_illustration_drawing)drawing
 					     : GZ_DRAWING_GREY;
 }
 
@@ -85,6 +97,12 @@ void gz_illustration_look_show_plain(struct gz_illustration_look *look)
 {
 	look->show = GZ_SHOW_PLAIN;
 	look->drawing = GZ_DRAWING_GREY;
+}
+
+bool gz_illustration_said(int drawing, int direction)
+{
+	return drawing >= 0 && drawing <= 1 + (int)GZ_DRAWING_HATCHES && direction >= 0 &&
+	       direction <= 1 + (int)GZ_HATCH_AROUND;
 }
 
 #define WEIGHT(field) offsetof(struct gz_shading_settings, field)

@@ -34,13 +34,24 @@ enum gz_illustration_drawing {
 	GZ_DRAWING_HATCHES,  /**< by strokes: hatch_lines.h */
 };
 
+/** Which way the strokes of hatches run. A second layer crosses them in shadows. */
+enum gz_hatch_direction {
+	GZ_HATCH_ALONG,  /**< where the surface bends least: along a tube */
+	GZ_HATCH_AROUND, /**< where it bends most: around a tube */
+};
+
+/** What an object can say of its drawing and of its strokes: "scene", then the names above. */
+extern const char *const gz_illustration_said_drawings[];
+extern const char *const gz_illustration_said_directions[];
+
 /** Sections [illustration] and [shading_map] of a scene. */
 struct gz_illustration_look {
-	int source;       /**< enum gz_illustration_source */
-	int show;         /**< enum gz_illustration_show, or a parameter */
-	int drawing;      /**< enum gz_illustration_drawing */
-	bool automatic;   /**< combined settings follow what is seen: illustration_automatic.h */
-	double pen_width; /**< width of strokes, diameter of points, px */
+	int source;          /**< enum gz_illustration_source */
+	int show;            /**< enum gz_illustration_show, or a parameter */
+	int drawing;         /**< enum gz_illustration_drawing */
+	int hatch_direction; /**< enum gz_hatch_direction */
+	bool automatic;      /**< combined settings follow what is seen: illustration_automatic.h */
+	double pen_width;    /**< width of strokes, diameter of points, px */
 	char chosen_object[GZ_NAME_SIZE]; /**< from which distances count; empty: none */
 	char template_name[GZ_PATH_SIZE]; /**< gz_shading_template_named(), or a file; empty: none
 					   */
@@ -62,8 +73,13 @@ enum gz_illustration_binding {
 	GZ_ILLUSTRATION_BINDINGS,
 };
 
-/** How a look draws: its drawing, or grey where it shows one parameter alone. */
-enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illustration_look *look);
+/** How a look draws an object: grey where it shows one parameter alone. @param said  of the object:
+ *  0: as the look says; otherwise one more than enum gz_illustration_drawing */
+enum gz_illustration_drawing gz_illustration_look_drawing(const struct gz_illustration_look *look,
+							  int said);
+
+/** Whether an object can say these: numbers of the names above. */
+bool gz_illustration_said(int drawing, int direction);
 
 /** Bind all tables to @p look, which is borrowed. */
 void gz_illustration_look_bind(struct gz_illustration_look *look,

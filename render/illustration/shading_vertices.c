@@ -69,19 +69,9 @@ static enum gz_result shape_vertices(const struct gz_mesh *mesh, struct gz_worke
 /* Meshes are shared by others, so a copy is mended. */
 static enum gz_result copy_and_mend(const struct gz_mesh *mesh, struct gz_mesh *out_copy)
 {
-	enum gz_result result =
-		gz_mesh_allocate(mesh->vertex_count, mesh->triangle_count, out_copy);
+	enum gz_result result = gz_mesh_copy(mesh, out_copy);
 	if (result != GZ_OK)
 		return result;
-	if (mesh->vertex_count > 0) {
-		memcpy(out_copy->positions, mesh->positions,
-		       mesh->vertex_count * sizeof *mesh->positions);
-		memcpy(out_copy->normals, mesh->normals,
-		       mesh->vertex_count * sizeof *mesh->normals);
-	}
-	if (mesh->triangle_count > 0)
-		memcpy(out_copy->triangles, mesh->triangles,
-		       mesh->triangle_count * sizeof *mesh->triangles);
 	result = gz_mesh_mend(out_copy, NULL);
 	if (result != GZ_OK)
 		gz_mesh_free(out_copy);

@@ -50,6 +50,25 @@ enum gz_result gz_mesh_allocate(uint64_t vertex_count, uint64_t triangle_count,
 	return GZ_OK;
 }
 
+enum gz_result gz_mesh_copy(const struct gz_mesh *mesh, struct gz_mesh *out_copy)
+{
+	const enum gz_result result =
+		gz_mesh_allocate(mesh->vertex_count, mesh->triangle_count, out_copy);
+	if (result != GZ_OK)
+		return result;
+	out_copy->shared_count = mesh->shared_count;
+	if (mesh->vertex_count > 0) {
+		memcpy(out_copy->positions, mesh->positions,
+		       mesh->vertex_count * sizeof *mesh->positions);
+		memcpy(out_copy->normals, mesh->normals,
+		       mesh->vertex_count * sizeof *mesh->normals);
+	}
+	if (mesh->triangle_count > 0)
+		memcpy(out_copy->triangles, mesh->triangles,
+		       mesh->triangle_count * sizeof *mesh->triangles);
+	return GZ_OK;
+}
+
 void gz_mesh_free(struct gz_mesh *mesh)
 {
 	free(mesh->positions);

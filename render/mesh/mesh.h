@@ -53,6 +53,14 @@ struct gz_mesh {
 enum gz_result gz_mesh_allocate(uint64_t vertex_count, uint64_t triangle_count,
 				struct gz_mesh *out_mesh);
 
+/**
+ * Copy a mesh.
+ *
+ * @param[out] out_copy  written on GZ_OK; the caller frees it with gz_mesh_free()
+ * @return otherwise as gz_mesh_allocate()
+ */
+enum gz_result gz_mesh_copy(const struct gz_mesh *mesh, struct gz_mesh *out_copy);
+
 /** Free the arrays and zero the struct. Accepts a zero-initialised mesh. */
 void gz_mesh_free(struct gz_mesh *mesh);
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/ini.h"
+#include "render/illustration/illustration_look.h"
 #include "render/scene/techniques.h"
 
 #define GZ_LOG_MODULE "scene"
@@ -40,6 +41,13 @@ const struct gz_option gz_scene_object_options[GZ_SCENE_OBJECT_OPTIONS] = {
 	  .help = "importance of the object in illustrations, 0 to 1" },
 	{ "object.transparency", GZ_OPTION_DOUBLE, AT(style.transparency), 0, 1, .preset = "0",
 	  .help = "how much of what is behind the object shows in illustrations, 0 to 1" },
+	{ "object.drawing", GZ_OPTION_CHOICE, AT(style.drawing),
+	  .choices = gz_illustration_said_drawings, .preset = "scene",
+	  .help = "how illustrations draw the object; scene: as illustration.drawing says" },
+	{ "object.hatch_direction", GZ_OPTION_CHOICE, AT(style.hatch_direction),
+	  .choices = gz_illustration_said_directions, .preset = "scene",
+	  .help = "hatches: strokes run along the object's tubes and ridges, or around them; "
+		  "scene: as illustration.hatch_direction says" },
 	{ "object.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_SCENE_FILE_SIZE,
 	  .preset = "",
 	  .help = "template of illustrative settings: a name, or a file, searched as volume.file "

@@ -50,8 +50,8 @@ struct gz_scene_objects {
 };
 
 /** Options of an object, and how many of them, the last ones, can change while it is shown. */
-#define GZ_SCENE_OBJECT_OPTIONS       11
-#define GZ_SCENE_OBJECT_SHOWN_OPTIONS 4
+#define GZ_SCENE_OBJECT_OPTIONS       13
+#define GZ_SCENE_OBJECT_SHOWN_OPTIONS 6
 
 /** Table over struct gz_scene_object. Its keys are "object.<name>"; those of one object are
  *  "object NAME.<name>". */
@@ -69,7 +69,7 @@ struct gz_option_binding gz_scene_object_bind(struct gz_scene_object *object,
 					      struct gz_scene_object_table *table);
 
 /** gz_scene_object_bind() for the options that can change while the object is shown: visible,
- *  importance, transparency, template. */
+ *  importance, transparency, drawing, hatch_direction, template. */
 struct gz_option_binding gz_scene_object_bind_shown(struct gz_scene_object *object,
 						    struct gz_scene_object_table *table);
 

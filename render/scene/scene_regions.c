@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "render/illustration/illustration_look.h"
+
 #define AT(field) offsetof(struct gz_scene_region, field)
 
 const struct gz_option gz_scene_region_options[GZ_SCENE_REGION_OPTIONS] = {
@@ -17,6 +19,13 @@ const struct gz_option gz_scene_region_options[GZ_SCENE_REGION_OPTIONS] = {
 	  .help = "importance of the region in illustrations, 0 to 1" },
 	{ "region.transparency", GZ_OPTION_DOUBLE, AT(style.transparency), 0, 1, .preset = "0",
 	  .help = "how much of what is behind the region shows in illustrations, 0 to 1" },
+	{ "region.drawing", GZ_OPTION_CHOICE, AT(style.drawing),
+	  .choices = gz_illustration_said_drawings, .preset = "scene",
+	  .help = "how illustrations draw the region; scene: as illustration.drawing says" },
+	{ "region.hatch_direction", GZ_OPTION_CHOICE, AT(style.hatch_direction),
+	  .choices = gz_illustration_said_directions, .preset = "scene",
+	  .help = "hatches: strokes run along the region's ridges, or around them; scene: as "
+		  "illustration.hatch_direction says" },
 	{ "region.template", GZ_OPTION_STRING, AT(template_name), .max = GZ_NAME_SIZE, .preset = "",
 	  .help = "template of illustrative settings: a name, or a file, searched as volume.file "
 		  "is" },

@@ -36,7 +36,7 @@ struct gz_scene_regions {
 };
 
 /** Options of a region. */
-#define GZ_SCENE_REGION_OPTIONS 6
+#define GZ_SCENE_REGION_OPTIONS 8
 
 /** Table over struct gz_scene_region. Its keys are "region.<name>"; those of one region are
  *  "region NUMBER.<name>". */

@@ -40,6 +40,9 @@ struct gz_technique;
 struct gz_object_style {
 	double importance;   /**< [0, 1] */
 	double transparency; /**< [0, 1]: 0 hides what is behind, 1 cannot be seen */
+	/** How illustrations draw it, and which way its strokes run: 0: as the settings say;
+	 *  otherwise one more than enum gz_illustration_drawing and enum gz_hatch_direction. */
+	int drawing, hatch_direction;
 };
 
 /** The style of an object for which nothing is said: half important, opaque. */
@@ -72,7 +75,9 @@ struct gz_backend_params {
 	int threads;      /**< cpu: 1 to 256; 0 = one for each processor */
 	const char *simd; /**< cpu: "portable", "avx2" or "avx512"; NULL or "auto" = the best */
 	/** Volumes of bricks: each picture waits until the bricks that it shows are loaded, as many
-	 *  as fit. Otherwise a picture shows the bricks that are there, coarse ones first. */
+	 *  as fit. Otherwise a picture shows the bricks that are there, coarse ones first.
+	 *  Illustrations: each picture waits until its points or strokes are made. Otherwise it is
+	 *  grey until they are. */
 	bool wait_for_bricks;
 	/** gl: where to draw; borrowed, outlives the drawer. NULL = a context of its own from EGL,
 	 *  without a window. A program with windows must pass a window's context
@@ -97,7 +102,8 @@ struct gz_frame_stats {
 	/** What an illustration with illustration.automatic is like, valid until the next picture;
 	 *  NULL: not measured. */
 	const struct gz_shading_measures *measures;
-	uint64_t bricks_coming; /**< bricks that were requested and are not loaded yet. While it is
+	uint64_t bricks_coming; /**< bricks that were requested and are not loaded yet, and 1 if
+				     marks of an illustration are being made. While it is
 				     above 0, the same picture made again is sharper */
 };
 

@@ -7,6 +7,8 @@
 
 #include "base/workers.h"
 #include "drawn_meshes.h"
+#include "kept_files.h"
+#include "render/illustration/cached_strokes.h"
 #include "render/illustration/hatch_lines.h"
 #include "render/mesh/point_grid.h"
 
@@ -388,6 +390,92 @@ static void directions_of_noise_are_those_around_it(void **state)
 	free(directions);
 }
 
+static void assert_same_strokes(const struct gz_hatch_strokes *a, const struct gz_hatch_strokes *b)
+{
+	assert_int_equal(a->stroke_count, b->stroke_count);
+	assert_int_equal(a->node_count, b->node_count);
+	assert_true(a->length_mm == b->length_mm && a->area_mm2 == b->area_mm2);
+	assert_memory_equal(a->strokes, b->strokes, a->stroke_count * sizeof *a->strokes);
+	assert_memory_equal(a->nodes, b->nodes, a->node_count * sizeof *a->nodes);
+}
+
+static void strokes_are_kept(void **state)
+{
+	(void)state;
+	const struct gz_mesh_cache_place place = { NULL, "strokes" };
+	const struct gz_hatch_strokes *strokes = &strokes_of[DRAWN_BALL];
+	const struct gz_mesh *mesh = &meshes[DRAWN_BALL];
+	struct gz_cached_strokes_kind kind = { POINTS, 60, 0.8, 0 };
+	struct gz_hatch_strokes read = { 0 };
+	(void)kept_files_open();
+	assert_int_equal(gz_cached_strokes_load(mesh, &kind, &place, NULL, &read),
+			 GZ_ERR_NOT_FOUND);
+	assert_int_equal(gz_cached_strokes_store(mesh, &kind, &place, NULL, strokes), GZ_OK);
+	assert_int_equal(kept_files_count(), 1);
+	assert_int_equal(gz_cached_strokes_load(mesh, &kind, &place, NULL, &read), GZ_OK);
+	assert_same_strokes(&read, strokes);
+	gz_hatch_strokes_free(&read);
+	const struct gz_hatch_strokes none = { 0 };
+	assert_int_equal(gz_cached_strokes_store(mesh, &kind, &place, NULL, &none), GZ_OK);
+	assert_int_equal(gz_cached_strokes_load(mesh, &kind, &place, NULL, &read), GZ_OK);
+	assert_int_equal(read.stroke_count, 0);
+	gz_hatch_strokes_free(&read);
+	/* those of another kind or mesh are others */
+	kind.across = 1;
+	assert_int_equal(gz_cached_strokes_load(mesh, &kind, &place, NULL, &read),
+			 GZ_ERR_NOT_FOUND);
+	assert_int_equal(gz_cached_strokes_load(&meshes[DRAWN_BOARD], &kind, &place, NULL, &read),
+			 GZ_ERR_NOT_FOUND);
+	kept_files_close();
+}
+
+/* A file with the right hash can still hold no strokes. */
+static void kept_floats_that_are_no_strokes_are_refused(void **state)
+{
+	(void)state;
+	enum { HEAD = 8, ALL = HEAD + 2 * 2 + 5 * 6 };
+	static const struct {
+		int at;
+		float value;
+	} lies[] = {
+		{ 0, 1 }, /* more strokes than there is room for */
+		{ 0, -1 },       { 1, 0.5F },  { 1, 1 },        { 1, 3 },        { 1, 1e30F },
+		{ HEAD, 1 }, /* a stroke of one node */
+		{ HEAD, 4 }, /* more nodes than there are */
+		{ HEAD, 2.5F },  { HEAD, -2 }, { HEAD, 1e30F }, { HEAD + 2, 2 }, /* a node is left
+										    over */
+		{ HEAD + 1, 8 }, /* the length before strokes falls */
+	};
+	const struct gz_mesh_cache_place place = { NULL, "strokes" };
+	const struct gz_mesh *mesh = &meshes[DRAWN_BALL];
+	const struct gz_cached_strokes_kind kind = { 7, 60, 0.8, 0 };
+	struct gz_mesh_key key;
+	struct gz_hatch_strokes read = { 0 };
+	(void)kept_files_open();
+	assert_int_equal(
+		gz_mesh_key_make(mesh, "mesh strokes 1, 7, 60, 0.80000000000000004, 0", &key),
+		GZ_OK);
+	for (int i = -1; i < (int)(sizeof lies / sizeof lies[0]); i++) {
+		float floats[ALL] = { 0, 2, 7, 0, 0, 9 };
+		const struct gz_mesh_cache_array all = { floats, ALL };
+		floats[HEAD] = 2;
+		floats[HEAD + 2] = 3;
+		floats[HEAD + 3] = 4;
+		if (i >= 0)
+			floats[lies[i].at] = lies[i].value;
+		assert_int_equal(gz_mesh_cache_store(&place, &key, &all, 1, NULL), GZ_OK);
+		const enum gz_result result =
+			gz_cached_strokes_load(mesh, &kind, &place, NULL, &read);
+		if (result != (i < 0 ? GZ_OK : GZ_ERR_FORMAT))
+			fail_msg("lie %d: %d", i, (int)result);
+		if (i < 0)
+			assert_true(read.node_count == 5 && read.strokes[1].first == 2 &&
+				    read.length_mm == 7 && read.area_mm2 == 9);
+		gz_hatch_strokes_free(&read);
+	}
+	kept_files_close();
+}
+
 static void mesh_without_directions_has_no_strokes(void **state)
 {
 	(void)state;
@@ -427,6 +515,8 @@ TEST_SUITE(hatch)
 		cmocka_unit_test(directions_of_a_tube_run_along_it),
 		cmocka_unit_test(directions_of_noise_are_those_around_it),
 		cmocka_unit_test(mesh_without_directions_has_no_strokes),
+		cmocka_unit_test(strokes_are_kept),
+		cmocka_unit_test(kept_floats_that_are_no_strokes_are_refused),
 	};
 	return cmocka_run_group_tests(tests, make_strokes, free_strokes);
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "mesh_fields.h"
 #include "mesh_shapes.h"
@@ -92,7 +93,8 @@ static void plain_look(struct easel *easel)
 	settings->edge_light = settings->overlap_shadow = settings->haze = settings->lines = 0;
 }
 
-static enum gz_result draw_shot(struct gz_illustrate_caster *caster, struct easel *easel)
+static enum gz_result draw_counted(struct gz_illustrate_caster *caster, struct easel *easel,
+				   struct gz_frame_stats *out_stats)
 {
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	const struct gz_illustrate_planes planes = { &easel->depth, &easel->ids };
@@ -105,12 +107,26 @@ static enum gz_result draw_shot(struct gz_illustrate_caster *caster, struct ease
 	assert_int_equal(
 		gz_plan_make(&easel->foveation, &display, easel->gaze, WIDTH, HEIGHT, &easel->plan),
 		GZ_OK);
-	return gz_illustrate_caster_draw(caster, &shot, &easel->image, &planes, NULL);
+	return gz_illustrate_caster_draw(caster, &shot, &easel->image, &planes, out_stats);
+}
+
+static enum gz_result draw_shot(struct gz_illustrate_caster *caster, struct easel *easel)
+{
+	return draw_counted(caster, easel, NULL);
+}
+
+static void move_image(struct gz_image *from, struct gz_image *to)
+{
+	gz_image_free(to);
+	*to = *from;
+	*from = (struct gz_image) { 0 };
 }
 
 static struct gz_illustrate_caster *new_caster(int threads, const char *simd)
 {
-	const struct gz_backend_params params = { .threads = threads, .simd = simd };
+	const struct gz_backend_params params = { .threads = threads,
+						  .simd = simd,
+						  .wait_for_bricks = true };
 	struct gz_illustrate_caster *caster = NULL;
 	assert_int_equal(gz_illustrate_caster_create(&params, NULL, &caster), GZ_OK);
 	return caster;
@@ -420,8 +436,10 @@ static void transparent_objects_blend_by_depth(void **state)
 		make_sheets(&seed, sheets);
 		for (int i = 0; i < SHEETS; i++) {
 			meshes[i] = mesh_of_sheet(&sheets[i]);
-			styles[i] = (struct gz_object_style) { sheets[i].importance,
-							       sheets[i].transparency };
+			styles[i] = (struct gz_object_style) {
+				.importance = sheets[i].importance,
+				.transparency = sheets[i].transparency,
+			};
 			objects[i] = (struct gz_object) { .id = 20 - (uint32_t)i,
 							  .volume = &easel.volume,
 							  .mesh = &meshes[i],
@@ -757,6 +775,175 @@ static void parameter_alone_is_grey(void **state)
 	take_down_easel(&easel);
 }
 
+/* While a thread makes points the picture is grey, to the last bit; then it is the drawing. */
+static void picture_is_grey_until_its_marks_are_made(void **state)
+{
+	(void)state;
+	static const struct timespec pause = { .tv_nsec = 1000 * 1000 };
+	for (int drawing = GZ_DRAWING_STIPPLES; drawing <= GZ_DRAWING_HATCHES; drawing++) {
+		const struct gz_backend_params params = { .threads = 2 };
+		struct easel easel;
+		struct gz_image grey = { 0 }, drawn = { 0 };
+		struct gz_illustrate_caster *caster = NULL;
+		struct gz_frame_stats stats;
+		set_up_easel(&easel);
+		draw_easel(&easel, 2);
+		move_image(&easel.image, &grey);
+		easel.look.drawing = drawing;
+		draw_easel(&easel, 2);
+		move_image(&easel.image, &drawn);
+		assert_int_equal(gz_illustrate_caster_create(&params, NULL, &caster), GZ_OK);
+		assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, easel.count),
+				 GZ_OK);
+		assert_int_equal(draw_counted(caster, &easel, &stats), GZ_OK);
+		assert_int_equal(stats.bricks_coming, 1);
+		assert_memory_equal(easel.image.pixels, grey.pixels, 4 * (size_t)PIXELS);
+		while (stats.bricks_coming > 0) {
+			(void)nanosleep(&pause, NULL);
+			assert_int_equal(draw_counted(caster, &easel, &stats), GZ_OK);
+		}
+		assert_memory_equal(easel.image.pixels, drawn.pixels, 4 * (size_t)PIXELS);
+		/* what a thread makes of meshes that have gone is left, also by the end */
+		add_ball(&easel, 9, 0, 9);
+		assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 2), GZ_OK);
+		assert_int_equal(draw_counted(caster, &easel, &stats), GZ_OK);
+		assert_int_equal(stats.bricks_coming, 1);
+		assert_int_equal(gz_illustrate_caster_show(caster, easel.objects + 1, 1), GZ_OK);
+		assert_int_equal(draw_counted(caster, &easel, &stats), GZ_OK);
+		gz_illustrate_caster_destroy(&caster);
+		gz_image_free(&grey);
+		gz_image_free(&drawn);
+		take_down_easel(&easel);
+	}
+}
+
+/* The mean brightness of one object, and what share of its pixels is bare paper. */
+static double tone_of_object(const struct easel *easel, uint32_t id, double *out_bare)
+{
+	double sum = 0;
+	int count = 0, bare = 0;
+	for (int i = 0; i < PIXELS; i++)
+		if (easel->ids.words[i] == id) {
+			const int grey = grey_at(easel, i % WIDTH, i / WIDTH);
+			sum += grey;
+			bare += grey == 255;
+			count++;
+		}
+	assert_true(count > 300);
+	*out_bare = (double)bare / count;
+	return sum / 255 / count;
+}
+
+/* Each object is drawn in its own way, whatever the scene says, and is as dark as its map. */
+static void objects_are_drawn_each_in_its_own_way(void **state)
+{
+	(void)state;
+	struct easel easel;
+	struct gz_image grey = { 0 };
+	double bare[2][2];
+	set_up_easel(&easel);
+	plain_look(&easel);
+	add_ball(&easel, 0, -14, 0);
+	easel.camera.eye[1] = -1;
+	easel.look.pen_width = 1.5;
+	draw_easel(&easel, 2);
+	const double map[2] = { tone_of_object(&easel, 3, &bare[0][0]),
+				tone_of_object(&easel, 4, &bare[0][1]) };
+	move_image(&easel.image, &grey);
+	for (int drawn = 0; drawn < 2; drawn++) {
+		easel.styles[drawn].drawing = 1 + GZ_DRAWING_STIPPLES;
+		easel.styles[1 - drawn].drawing = 0; /* as the scene: grey */
+		draw_easel(&easel, 2);
+		for (int i = 0; i < 2; i++)
+			assert_float_equal(tone_of_object(&easel, 3 + (uint32_t)i, &bare[1][i]),
+					   map[i], 0.05);
+		assert_true(bare[1][drawn] > bare[0][drawn] + 0.1);
+		assert_float_equal(bare[1][1 - drawn], bare[0][1 - drawn], 0.02);
+	}
+	/* the grey ball inside keeps its pixels, but for marks that reach over its rim */
+	int other = 0;
+	for (int i = 0; i < PIXELS; i++)
+		other += easel.ids.words[i] == 3 && grey_at(&easel, i % WIDTH, i / WIDTH) !=
+							    (int)(gz_image_words(&grey)[i] & 255);
+	assert_in_range(other, 0, 300);
+	/* what all objects say replaces what the scene says */
+	easel.look.drawing = GZ_DRAWING_HATCHES;
+	easel.styles[0].drawing = easel.styles[1].drawing = 1 + GZ_DRAWING_GREY;
+	draw_easel(&easel, 2);
+	assert_memory_equal(easel.image.pixels, grey.pixels, 4 * (size_t)PIXELS);
+	gz_image_free(&grey);
+	take_down_easel(&easel);
+}
+
+/* Of a grey object behind a transparent one that is drawn, and the other way round. */
+static void grey_and_drawn_layers_together_have_the_tone(void **state)
+{
+	(void)state;
+	for (int drawn = 0; drawn < 2; drawn++) {
+		struct easel easel;
+		set_up_easel(&easel);
+		plain_look(&easel);
+		add_ball(&easel, 0, 0, 0);
+		easel.camera.eye[1] = -1;
+		easel.styles[0].transparency = 0.6;
+		draw_easel(&easel, 2);
+		const double grey = mean_of_objects(&easel);
+		easel.look.pen_width = 1.5;
+		easel.styles[drawn].drawing = 1 + GZ_DRAWING_STIPPLES;
+		draw_easel(&easel, 2);
+		assert_float_equal(mean_of_objects(&easel), grey, 0.05);
+		take_down_easel(&easel);
+	}
+}
+
+/* How the ink of a picture changes from pixel to pixel, to the right and down. */
+static void measure_steps(const struct easel *easel, double out_steps[2])
+{
+	out_steps[0] = out_steps[1] = 0;
+	for (int y = HEIGHT / 2 - 12; y < HEIGHT / 2 + 12; y++)
+		for (int x = WIDTH / 2 - 12; x < WIDTH / 2 + 12; x++) {
+			out_steps[0] += abs(grey_at(easel, x + 1, y) - grey_at(easel, x, y));
+			out_steps[1] += abs(grey_at(easel, x, y + 1) - grey_at(easel, x, y));
+		}
+}
+
+/* A ball that is pulled long stands for a tube: along it strokes are upright, around it level. */
+static void strokes_run_along_or_around_a_tube(void **state)
+{
+	(void)state;
+	double along[2], around[2], said[2];
+	struct easel easel;
+	set_up_easel(&easel);
+	plain_look(&easel);
+	for (size_t v = 0; v < easel.meshes[0].vertex_count; v++) {
+		float *place = easel.meshes[0].positions[v], *normal = easel.meshes[0].normals[v];
+		place[2] *= 4;
+		normal[2] /= 4;
+		const float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] +
+					   normal[2] * normal[2]);
+		for (int axis = 0; axis < 3; axis++)
+			normal[axis] /= length;
+	}
+	easel.camera.eye[1] = -1;
+	easel.look.drawing = GZ_DRAWING_HATCHES;
+	draw_easel(&easel, 2);
+	measure_steps(&easel, along);
+	easel.look.hatch_direction = GZ_HATCH_AROUND;
+	draw_easel(&easel, 2);
+	measure_steps(&easel, around);
+	assert_true(along[0] > 1.5 * along[1]);
+	assert_true(around[1] > 1.5 * around[0]);
+	easel.styles[0].hatch_direction = 1 + GZ_HATCH_ALONG; /* of the object alone */
+	draw_easel(&easel, 2);
+	measure_steps(&easel, said);
+	assert_true(said[0] == along[0] && said[1] == along[1]);
+	easel.styles[0].hatch_direction = 3;
+	struct gz_illustrate_caster *caster = new_caster(1, NULL);
+	assert_int_equal(gz_illustrate_caster_show(caster, easel.objects, 1), GZ_ERR_INVAL);
+	gz_illustrate_caster_destroy(&caster);
+	take_down_easel(&easel);
+}
+
 TEST_SUITE(illustrate)
 {
 	const struct CMUnitTest tests[] = {
@@ -778,6 +965,10 @@ TEST_SUITE(illustrate)
 		cmocka_unit_test(drawing_has_ink_and_paper_and_lines),
 		cmocka_unit_test(surface_without_area_has_no_marks),
 		cmocka_unit_test(parameter_alone_is_grey),
+		cmocka_unit_test(picture_is_grey_until_its_marks_are_made),
+		cmocka_unit_test(objects_are_drawn_each_in_its_own_way),
+		cmocka_unit_test(grey_and_drawn_layers_together_have_the_tone),
+		cmocka_unit_test(strokes_run_along_or_around_a_tube),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

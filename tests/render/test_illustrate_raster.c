@@ -25,6 +25,9 @@
 enum { WIDTH = 100, HEIGHT = 76, PIXELS = WIDTH * HEIGHT, BALLS_MAX = 6 };
 
 /* One for all tests: its shaders are compiled once. */
+/* Pictures wait until their marks are made. */
+static const struct gz_backend_params waiting = { .wait_for_bricks = true };
+
 static struct gz_illustrate_raster *raster;
 
 /* What a test draws: balls in a world 40 mm wide. */
@@ -153,7 +156,7 @@ static void draw_rays(struct easel *easel, struct print *print)
 	const struct gz_illustrate_shot shot = shot_of(easel);
 	const struct gz_illustrate_planes planes = { &print->depth, &print->ids };
 	struct gz_illustrate_caster *caster = NULL;
-	assert_int_equal(gz_illustrate_caster_create(NULL, NULL, &caster), GZ_OK);
+	assert_int_equal(gz_illustrate_caster_create(&waiting, NULL, &caster), GZ_OK);
 	assert_int_equal(gz_illustrate_caster_show(caster, easel->objects, easel->count), GZ_OK);
 	assert_int_equal(
 		gz_illustrate_caster_draw(caster, &shot, &print->image, &planes, &print->stats),
@@ -681,7 +684,7 @@ TEST_SUITE(illustrate_raster)
 		cmocka_unit_test(picture_left_in_a_lent_context_equals_the_one_read_back),
 		cmocka_unit_test(shaders_of_illustrations_are_valid_for_the_reference_compiler),
 	};
-	if (gz_illustrate_raster_create(NULL, NULL, &raster) != GZ_OK)
+	if (gz_illustrate_raster_create(&waiting, NULL, &raster) != GZ_OK)
 		return 77;
 	const int failed = cmocka_run_group_tests(tests, NULL, NULL);
 	gz_illustrate_raster_destroy(&raster);

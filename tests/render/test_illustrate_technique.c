@@ -284,6 +284,27 @@ static void what_is_computed_of_a_mesh_is_kept_once(void **state)
 	kept_files_close();
 }
 
+/* The surface of a volume that a scene begins with is kept, those of a moving isovalue are not. */
+static void first_surface_of_a_volume_is_kept(void **state)
+{
+	(void)state;
+	struct gallery gallery;
+	(void)kept_files_open();
+	for (int start = 0; start < 2; start++) {
+		open_gallery(&gallery);
+		gallery.object.mesh = NULL;
+		gallery.object.input = "/nowhere/ball.raw";
+		gallery.rays.surface.isovalue = 4;
+		show_and_draw(&gallery);
+		assert_int_equal(kept_files_count(), 1);
+		gallery.rays.surface.isovalue = 5;
+		show_and_draw(&gallery);
+		close_gallery(&gallery);
+		assert_int_equal(kept_files_count(), 1);
+	}
+	kept_files_close();
+}
+
 static void unknown_backends_are_refused_by_name(void **state)
 {
 	(void)state;
@@ -309,6 +330,7 @@ TEST_SUITE(illustrate_technique)
 		cmocka_unit_test(clip_box_cuts),
 		cmocka_unit_test(surface_of_a_volume_follows_the_isovalue),
 		cmocka_unit_test(what_is_computed_of_a_mesh_is_kept_once),
+		cmocka_unit_test(first_surface_of_a_volume_is_kept),
 		cmocka_unit_test(unknown_backends_are_refused_by_name),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -207,6 +207,44 @@ static void faulty_files_are_refused_with_one_line(void **state)
 
 /* A file with a right hash is refused too if it has a number that would spread through a picture.
  */
+/* A file of any length gives as much as it has, and is checked as one of a known length is. */
+static void file_of_any_length_is_loaded_whole(void **state)
+{
+	(void)state;
+	static const struct gz_mesh_cache_place place = { NULL, "sample" };
+	struct sample sample;
+	unsigned char bytes[FILE_SIZE];
+	struct gz_mesh_cache_array whole = { 0 };
+	store_bytes(&sample, bytes);
+	assert_int_equal(gz_mesh_cache_load_whole(&place, &sample.key, FLOATS, NULL, &whole),
+			 GZ_OK);
+	assert_int_equal(whole.count, FLOATS);
+	assert_memory_equal(whole.values, sample.first, sizeof sample.first);
+	assert_memory_equal(whole.values + 5, sample.second, sizeof sample.second);
+	free(whole.values);
+	whole = (struct gz_mesh_cache_array) { 0 };
+	struct gz_log log = make_log();
+	assert_int_equal(gz_mesh_cache_load_whole(&place, &sample.key, FLOATS - 1, &log, &whole),
+			 GZ_ERR_FORMAT);
+	assert_int_equal(log_lines, 1);
+	for (size_t size = 0; size < FILE_SIZE; size++) { /* cut short anywhere */
+		log = make_log();
+		put_bytes(&sample, bytes, size);
+		assert_int_equal(
+			gz_mesh_cache_load_whole(&place, &sample.key, FLOATS, &log, &whole),
+			GZ_ERR_FORMAT);
+		assert_int_equal(log_lines, 1);
+	}
+	bytes[FILE_SIZE - 1]++;
+	put_bytes(&sample, bytes, FILE_SIZE);
+	assert_int_equal(gz_mesh_cache_load_whole(&place, &sample.key, FLOATS, NULL, &whole),
+			 GZ_ERR_FORMAT);
+	assert_null(whole.values);
+	sample.key.bytes[0]++;
+	assert_int_equal(gz_mesh_cache_load_whole(&place, &sample.key, FLOATS, NULL, &whole),
+			 GZ_ERR_NOT_FOUND);
+}
+
 static void numbers_that_are_not_finite_are_refused(void **state)
 {
 	(void)state;
@@ -351,6 +389,7 @@ TEST_SUITE(mesh_cache)
 		cmocka_unit_test(what_is_stored_is_loaded),
 		cmocka_unit_test(keys_tell_meshes_and_purposes_apart),
 		cmocka_unit_test(faulty_files_are_refused_with_one_line),
+		cmocka_unit_test(file_of_any_length_is_loaded_whole),
 		cmocka_unit_test(numbers_that_are_not_finite_are_refused),
 		cmocka_unit_test(missing_file_is_not_found_and_not_logged),
 		cmocka_unit_test(input_folder_serves_where_the_users_cannot),

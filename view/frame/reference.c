@@ -176,6 +176,7 @@ static bool same_look(const struct gz_object *a, const struct gz_object *b)
 	const struct gz_shading_template *of_a = a->shading_template;
 	const struct gz_shading_template *of_b = b->shading_template;
 	return one->importance == other->importance && one->transparency == other->transparency &&
+	       one->drawing == other->drawing && one->hatch_direction == other->hatch_direction &&
 	       !of_a == !of_b &&
 	       (!of_a ||
 		gz_options_same(gz_template_options, gz_template_option_count, of_a, of_b));
@@ -294,6 +295,7 @@ enum gz_result gz_reference_worker_start(const struct gz_reference_source *sourc
 	const struct gz_picture_maker_params params = {
 		.backend = source->backend ? source->backend : cpu_name,
 		.backend_params = { .threads = reference_threads(source),
+				    .wait_for_bricks = true, /* and for marks */
 				    .gl_memory_bytes = source->gl_memory_bytes },
 	};
 	worker->strip_rows = strcmp(params.backend, cpu_name) == 0 ? STRIP_ROWS_CPU : STRIP_ROWS_GL;

@@ -73,17 +73,12 @@ static bool draw_combined(const struct gz_settings_panel *rows, struct gz_scene_
 {
 	static const char *const source[] = { "illustration.settings", NULL };
 	static const char *const combined[] = {
-		"illustration.edge_emphasis",
-		"illustration.detail_amplitude",
-		"illustration.detail_frequency",
-		"illustration.spatial_effect",
-		"illustration.foreground",
-		"illustration.scene_information",
-		"illustration.automatic",
-		"illustration.drawing",
-		"illustration.pen_width",
-		"illustration.chosen_object",
-		NULL,
+		"illustration.edge_emphasis",    "illustration.detail_amplitude",
+		"illustration.detail_frequency", "illustration.spatial_effect",
+		"illustration.foreground",       "illustration.scene_information",
+		"illustration.automatic",        "illustration.drawing",
+		"illustration.hatch_direction",  "illustration.pen_width",
+		"illustration.chosen_object",    NULL,
 	};
 	bool changed = gz_settings_rows_draw(rows, source);
 	changed |= draw_scene_template(&settings->rays.illustration);

@@ -46,8 +46,12 @@ static enum gz_result open_print(struct gz_window *window)
 static bool is_drawn_by_marks(const struct gz_window *window)
 {
 	const struct gz_scene_settings *settings = &window->settings;
-	return gz_setting_applies(settings, "illustration.show") &&
-	       gz_illustration_look_drawing(&settings->rays.illustration) != GZ_DRAWING_GREY;
+	const struct gz_illustration_look *look = &settings->rays.illustration;
+	bool any = gz_illustration_look_drawing(look, 0) != GZ_DRAWING_GREY;
+	for (size_t i = 0; i < settings->objects.count && !any; i++)
+		any = gz_illustration_look_drawing(
+			      look, settings->objects.items[i].style.drawing) != GZ_DRAWING_GREY;
+	return gz_setting_applies(settings, "illustration.show") && any;
 }
 
 /* "NAME.svg" beside the scene. */

@@ -81,6 +81,7 @@ enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *param
 	if (!caster)
 		return GZ_ERR_NO_MEM;
 	caster->log = caster->scene.log = caster->scene.meshes.log = log;
+	caster->scene.waits_for_marks = params && params->wait_for_bricks;
 	const enum gz_result result = start_illustrating(caster, params ? params : &defaults);
 	if (result != GZ_OK) {
 		gz_illustrate_caster_destroy(&caster);
@@ -250,6 +251,7 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 			.rays = plan->ray_count,
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
+			.bricks_coming = caster->scene.marks_coming,
 			.cast_ms = gz_ns_to_ms(cast_ns - prepared_ns),
 			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
 			.gpu_ms = NAN,

@@ -119,6 +119,7 @@ enum gz_result gz_illustrate_raster_create(const struct gz_backend_params *param
 	if (!raster)
 		return GZ_ERR_NO_MEM;
 	raster->log = raster->scene.log = raster->scene.meshes.log = log;
+	raster->scene.waits_for_marks = params && params->wait_for_bricks;
 	const enum gz_result result = open_illustrate_raster(raster, params ? params : &defaults);
 	if (result != GZ_OK) {
 		gz_illustrate_raster_destroy(&raster);
@@ -420,6 +421,7 @@ static enum gz_result draw_illustrated_frame(struct illustrate_rastering *raster
 		.rays = points_drawn(&raster->points),
 		.prepare_ms = prepare_ms,
 		.prepare_within_ms = prepare_ms,
+		.bricks_coming = raster->scene.marks_coming,
 		.cast_ms = gz_ns_to_ms(found_ns - uploaded_ns),
 		.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - found_ns),
 		.gpu_ms = raster->device.software ? NAN

@@ -18,10 +18,14 @@ static enum gz_result make_plane_room(struct gz_illustrate_drawing *drawing, siz
 	free(drawing->before);
 	free(drawing->outlines);
 	free(drawing->layer_lines);
+	free(drawing->paper);
+	drawing->paper = malloc(pixels * sizeof *drawing->paper);
 	drawing->before = malloc(pixels * sizeof *drawing->before);
 	drawing->outlines = malloc(pixels * sizeof *drawing->outlines);
 	drawing->layer_lines = malloc(pixels * sizeof *drawing->layer_lines);
-	drawing->room = drawing->before && drawing->outlines && drawing->layer_lines ? pixels : 0;
+	const bool complete =
+		drawing->before && drawing->outlines && drawing->layer_lines && drawing->paper;
+	drawing->room = complete ? pixels : 0;
 	return drawing->room > 0 ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
@@ -51,16 +55,40 @@ static enum gz_result find_rays(const struct gz_illustrate_shot *shot, double wo
 	return result;
 }
 
+/* Find which objects are grey, and whether any are drawn. */
+static enum gz_result sort_objects(struct gz_illustrate_drawing *drawing,
+				   const struct gz_illustrate_scene *scene)
+{
+	drawing->drawn = drawing->mixed = false;
+	if (drawing->grey_room < scene->id_count) {
+		free(drawing->grey_ids);
+		drawing->grey_ids = malloc(scene->id_count * sizeof *drawing->grey_ids);
+		drawing->grey_room = drawing->grey_ids ? scene->id_count : 0;
+		if (!drawing->grey_ids)
+			return GZ_ERR_NO_MEM;
+	}
+	memset(drawing->grey_ids, 0, scene->id_count * sizeof *drawing->grey_ids);
+	for (size_t i = 0; i < scene->count; i++) {
+		const bool grey = gz_illustrate_item_drawn(&scene->items[i], drawing->look) ==
+				  GZ_DRAWING_GREY;
+		drawing->grey_ids[scene->meshes.items[i].object.id - 1] = grey;
+		drawing->drawn = drawing->drawn || !grey;
+		drawing->mixed = drawing->mixed || grey;
+	}
+	return GZ_OK;
+}
+
 enum gz_result gz_illustrate_drawing_begin(struct gz_illustrate_drawing *drawing,
 					   const struct gz_illustrate_scene *scene,
 					   const struct gz_illustrate_shot *shot)
 {
 	const struct gz_plan *plan = shot->plan;
 	const size_t pixels = (size_t)plan->width * (size_t)plan->height;
-	drawing->kind = gz_illustration_look_drawing(shot->look);
-	if (drawing->kind == GZ_DRAWING_GREY)
-		return GZ_OK;
-	enum gz_result result = make_plane_room(drawing, pixels);
+	drawing->look = shot->look;
+	enum gz_result result = sort_objects(drawing, scene);
+	if (result != GZ_OK || !drawing->drawn)
+		return result;
+	result = make_plane_room(drawing, pixels);
 	if (result == GZ_OK)
 		result = gz_plane_resize(&drawing->tone, GZ_PLANE_VALUE, plan->width, plan->height);
 	if (result == GZ_OK)
@@ -75,6 +103,8 @@ enum gz_result gz_illustrate_drawing_begin(struct gz_illustrate_drawing *drawing
 	drawing->height = plan->height;
 	drawing->discs.count = drawing->lines.count = 0;
 	drawing->begun = false;
+	for (size_t i = 0; i < pixels && drawing->mixed; i++)
+		drawing->paper[i] = 1;
 	return GZ_OK;
 }
 
@@ -113,18 +143,40 @@ static struct gz_plane take_layer(struct gz_illustrate_drawing *drawing,
 	return drawing->tone;
 }
 
+/* Darken the paper where a layer's object is grey. */
+static void add_grey(struct gz_illustrate_drawing *drawing, const struct gz_illustrate_scene *scene,
+		     const struct gz_plane *tones, const struct gz_plane *ids)
+{
+	const size_t pixels = (size_t)drawing->width * (size_t)drawing->height;
+	for (size_t i = 0; i < pixels; i++) {
+		const size_t id = ids->words[i];
+		float tone;
+		if (id < 1 || id > scene->id_count || !drawing->grey_ids[id - 1])
+			continue;
+		memcpy(&tone, &tones->words[i], sizeof tone);
+		drawing->paper[i] *= fminf(fmaxf(tone, 0), 1);
+	}
+}
+
+/* Choose the marks of one object. */
 static enum gz_result choose_marks(struct gz_illustrate_drawing *drawing,
-				   const struct gz_illustrate_marks *marks,
-				   const struct gz_stipple_view *view, struct gz_workers *workers)
+				   const struct gz_illustrate_item *item,
+				   struct gz_stipple_view *view, struct gz_workers *workers)
 {
 	static const enum gz_hatch_layer layers[GZ_HATCH_DIRECTIONS] = { GZ_HATCH_FIRST,
 									 GZ_HATCH_CROSS };
+	const enum gz_illustration_drawing kind = gz_illustrate_item_drawn(item, drawing->look);
+	const int first = (int)gz_illustrate_item_direction(item, drawing->look);
+	const double size_px = kind == GZ_DRAWING_STIPPLES ? drawing->pen_px / 2 : drawing->pen_px;
 	enum gz_result result = GZ_OK;
-	if (drawing->kind == GZ_DRAWING_STIPPLES)
-		return gz_stipple_choose(&marks->points, view, workers, &drawing->discs);
+	view->size_px = fmin(fmax(size_px, MARK_LEAST_PX), MARK_MOST_PX);
+	if (kind == GZ_DRAWING_GREY)
+		return GZ_OK;
+	if (kind == GZ_DRAWING_STIPPLES)
+		return gz_stipple_choose(&item->marks.points, view, workers, &drawing->discs);
 	for (int i = 0; i < GZ_HATCH_DIRECTIONS && result == GZ_OK; i++)
-		result = gz_hatch_choose(&marks->strokes[i], view, layers[i], workers,
-					 &drawing->lines);
+		result = gz_hatch_choose(&item->marks.strokes[(first + i) % GZ_HATCH_DIRECTIONS],
+					 view, layers[i], workers, &drawing->lines);
 	return result;
 }
 
@@ -133,26 +185,32 @@ enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
 					 const struct gz_drawn_layer *layer,
 					 struct gz_workers *workers)
 {
-	const double size_px =
-		drawing->kind == GZ_DRAWING_STIPPLES ? drawing->pen_px / 2 : drawing->pen_px;
 	enum gz_result result = GZ_OK;
 	const struct gz_plane tone = take_layer(drawing, layer); /* whose words are another's */
+	if (drawing->mixed)
+		add_grey(drawing, scene, &tone, layer->ids);
 	for (size_t i = 0; i < scene->count && result == GZ_OK; i++) {
-		const struct gz_stipple_view view = {
+		struct gz_stipple_view view = {
 			.rays = &drawing->rays,
 			.world_per_mm = 1,
 			.tone = &tone,
 			.depth = layer->depth,
 			.ids = layer->ids,
 			.id = scene->meshes.items[i].object.id,
-			.size_px = fmin(fmax(size_px, MARK_LEAST_PX), MARK_MOST_PX),
 			.tolerance_px = GZ_STIPPLE_TOLERANCE_PX,
 			.scale = drawing->scale.factors ? &drawing->scale : NULL,
 			.backs = true,
 		};
-		result = choose_marks(drawing, &scene->items[i].marks, &view, workers);
+		result = choose_marks(drawing, &scene->items[i], &view, workers);
 	}
 	return result;
+}
+
+/* What grey objects leave of what ink leaves of a pixel. */
+static uint32_t paper_left(const struct gz_illustrate_drawing *drawing, size_t pixel,
+			   uint32_t white)
+{
+	return drawing->mixed ? (uint32_t)((float)white * drawing->paper[pixel] + 0.5F) : white;
 }
 
 /* Paper and ink, and lines over them. */
@@ -168,7 +226,7 @@ static void write_rows(void *user, size_t part, int worker)
 		const float *outlines = drawing->shown_lines + from;
 		uint32_t *pixels = gz_image_words(image) + from;
 		for (int x = 0; x < drawing->width; x++) {
-			const uint32_t paper = 255U - ink[x];
+			const uint32_t paper = paper_left(drawing, from + (size_t)x, 255U - ink[x]);
 			const float left = outlines[x] < 0 ? 0 : outlines[x];
 			const uint32_t line = (uint32_t)(int)(left * 255 + 0.5F);
 			const uint32_t grey = line < paper ? line : paper;
@@ -205,5 +263,7 @@ void gz_illustrate_drawing_free(struct gz_illustrate_drawing *drawing)
 	free(drawing->before);
 	free(drawing->outlines);
 	free(drawing->layer_lines);
+	free(drawing->paper);
+	free(drawing->grey_ids);
 	*drawing = (struct gz_illustrate_drawing) { 0 };
 }

@@ -4,7 +4,7 @@
  *
  * Each layer is drawn by marks of its own objects. Marks of different layers cover each other by
  * chance, so a layer is drawn with the tone M / N, where N is the brightness of the layers before
- * it, and M the brightness with it.
+ * it, and M the brightness with it. What of a layer is grey darkens the paper by that tone.
  */
 #ifndef GZ_RENDER_ILLUSTRATION_SHARED_ILLUSTRATE_DRAWING_H
 #define GZ_RENDER_ILLUSTRATION_SHARED_ILLUSTRATE_DRAWING_H
@@ -25,20 +25,25 @@
 
 /** The marks of a picture. Zero-initialised is empty; keep it from picture to picture. */
 struct gz_illustrate_drawing {
-	enum gz_illustration_drawing kind; /**< GZ_DRAWING_GREY: nothing is drawn here */
+	bool drawn; /**< marks draw at least one object; otherwise nothing is done here */
+	bool mixed; /**< and at least one is grey */
 	int width, height;
 	double pen_px;                 /**< width of the pen at the gaze, pixels of this picture */
 	struct gz_ray_frame rays;      /**< of the picture's pixels, mm */
 	struct gz_stipple_scale scale; /**< without factors: 1 everywhere */
-	struct gz_stipple_discs discs; /**< of GZ_DRAWING_STIPPLES */
-	struct gz_hatch_lines lines;   /**< of GZ_DRAWING_HATCHES */
+	struct gz_stipple_discs discs;
+	struct gz_hatch_lines lines;
 	struct gz_stipple_sheet sheet;
-	struct gz_plane tone;     /**< of a layer of several */
-	float *before;            /**< brightness of the layers before it */
-	float *outlines;          /**< brightness that the lines of all layers leave */
-	float *layer_lines;       /**< those of a layer: struct gz_shading_frame.lines_apart */
-	size_t room;              /**< pixels of these three */
-	bool begun;               /**< there is a layer of several */
+	struct gz_plane tone; /**< of a layer of several */
+	float *before;        /**< brightness of the layers before it */
+	float *outlines;      /**< brightness that the lines of all layers leave */
+	float *layer_lines;   /**< those of a layer: struct gz_shading_frame.lines_apart */
+	float *paper;         /**< what grey objects leave of the paper's brightness */
+	size_t room;          /**< pixels of these four */
+	bool *grey_ids;       /**< of objects from 1 on */
+	size_t grey_room;     /**< of them */
+	const struct gz_illustration_look *look; /**< of the picture, while it is made; borrowed */
+	bool begun;                              /**< there is a layer of several */
 	const float *shown_lines; /**< the lines of the picture: one of the two planes above */
 };
 

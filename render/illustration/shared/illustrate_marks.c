@@ -1,16 +1,11 @@
 #include "render/illustration/shared/illustrate_marks.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
-#include "render/illustration/cached_points.h"
 #include "render/illustration/shared/illustrate_scene.h"
-#include "render/mesh/mesh_curvature.h"
-
-#define GZ_LOG_MODULE "illustration"
 
 /* Points of all objects together, shared out by area: this many, or twice, four times ... as many,
  * for pictures of so many pixels. Chosen: 320 000 for a screen of 1920 x 1080, of which a tenth
@@ -23,18 +18,29 @@
 /* Fewest points of an object. Chosen: a small one has a tone, too. */
 #define POINTS_LEAST 500
 
-/* Distance of strokes in that of as many points. Measured: their densest tone is then as dark as
- * the map asks for. */
-#define STROKE_DISTANCE 0.8
-/* How far directions spread, in edges. Chosen by eye, on a skull. */
-#define DIRECTION_PASSES 60
-
-void gz_illustrate_marks_free(struct gz_illustrate_marks *marks)
+enum gz_illustration_drawing gz_illustrate_item_asks(const struct gz_illustrate_item *item,
+						     const struct gz_illustration_look *look)
 {
-	gz_stipple_points_free(&marks->points);
-	for (int i = 0; i < GZ_HATCH_DIRECTIONS; i++)
-		gz_hatch_strokes_free(&marks->strokes[i]);
-	*marks = (struct gz_illustrate_marks) { 0 };
+	return gz_illustration_look_drawing(look, item->said_drawing);
+}
+
+static unsigned made_for(const struct gz_illustrate_marks *marks, enum gz_illustration_drawing kind)
+{
+	return kind == GZ_DRAWING_STIPPLES ? marks->points_for : marks->strokes_for;
+}
+
+enum gz_illustration_drawing gz_illustrate_item_drawn(const struct gz_illustrate_item *item,
+						      const struct gz_illustration_look *look)
+{
+	const enum gz_illustration_drawing kind = gz_illustrate_item_asks(item, look);
+	return kind != GZ_DRAWING_GREY && made_for(&item->marks, kind) > 0 ? kind : GZ_DRAWING_GREY;
+}
+
+enum gz_hatch_direction gz_illustrate_item_direction(const struct gz_illustrate_item *item,
+						     const struct gz_illustration_look *look)
+{
+	return item->said_direction > 0 ? (enum gz_hatch_direction)(item->said_direction - 1)
+					: (enum gz_hatch_direction)look->hatch_direction;
 }
 
 static double area_of_mesh(const struct gz_mesh *mesh)
@@ -53,24 +59,6 @@ static double area_of_mesh(const struct gz_mesh *mesh)
 	return area;
 }
 
-/* Directions of the vertices of a mesh. */
-struct mesh_directions {
-	float (*vertices)[3];
-};
-
-/* What making marks needs, for the workers. */
-struct making_marks {
-	struct gz_illustrate_scene *scene;
-	struct gz_workers *workers;
-	unsigned in_all; /* points of all objects */
-	double *areas;   /* of the meshes, mm² */
-	double area;     /* of all */
-	/* While strokes are made: */
-	struct gz_mesh_points *points;
-	struct mesh_directions *directions; /* of each mesh */
-	enum gz_result *results;            /* of each mesh and direction */
-};
-
 /* Points of all objects that suit a picture. */
 static unsigned points_for(const struct gz_plan *plan)
 {
@@ -81,196 +69,183 @@ static unsigned points_for(const struct gz_plan *plan)
 	return count;
 }
 
-static size_t points_of_item(const struct making_marks *making, size_t index, double share)
+static bool item_lacks_marks(const struct gz_illustrate_item *item,
+			     const struct gz_illustration_look *look, unsigned in_all)
 {
-	const double part = making->area > 0 ? making->areas[index] / making->area : 0;
-	return (size_t)fmax(POINTS_LEAST, making->in_all * share * part);
+	const enum gz_illustration_drawing kind = gz_illustrate_item_asks(item, look);
+	return kind != GZ_DRAWING_GREY && made_for(&item->marks, kind) < in_all;
 }
 
-/* The points of an object's mesh. */
-static enum gz_result spread_points(const struct making_marks *making, size_t index, double share,
-				    struct gz_mesh_points *out_points)
+static bool any_lacks_marks(const struct gz_illustrate_scene *scene,
+			    const struct gz_illustration_look *look, unsigned in_all)
 {
-	const size_t count = points_of_item(making, index, share);
-	const struct gz_object *object = &making->scene->meshes.items[index].object;
-	char what[GZ_ILLUSTRATE_WHAT_SIZE], ending[GZ_ILLUSTRATE_KEPT_SIZE];
-	snprintf(what, sizeof what, "%zu.points", count);
-	gz_illustrate_kept_name(object, what, ending);
-	const struct gz_mesh_cache_place place = { object->input, ending };
-	return gz_cached_points_make(&making->scene->meshes.shown[index], count,
-				     object->mesh && object->input ? &place : NULL, making->workers,
-				     making->scene->log, out_points);
+	for (size_t i = 0; i < scene->count; i++)
+		if (item_lacks_marks(&scene->items[i], look, in_all))
+			return true;
+	return false;
 }
 
-static enum gz_result make_points(const struct making_marks *making, size_t index)
+/* ---- orders ---- */
+
+/* The curvatures of an object's vertices, as shares of its scale. */
+static struct gz_curvature *copy_curvatures(const struct gz_illustrate_item *item, size_t count)
 {
-	struct gz_illustrate_marks *marks = &making->scene->items[index].marks;
-	struct gz_mesh_points points = { 0 };
-	gz_stipple_points_free(&marks->points);
-	enum gz_result result = spread_points(making, index, 1, &points);
-	if (result == GZ_OK)
-		result = gz_stipple_points_make(&making->scene->meshes.shown[index], &points,
-						&marks->points);
-	gz_mesh_points_free(&points);
-	marks->points_for = result == GZ_OK ? making->in_all : 0;
-	return result;
+	struct gz_curvature *curvatures = malloc((count + 1) * sizeof *curvatures);
+	for (size_t i = 0; i < count && curvatures; i++) {
+		curvatures[i].greatest = item->vertices[i].greatest;
+		curvatures[i].least = item->vertices[i].least;
+		memcpy(curvatures[i].along, item->along[i], sizeof curvatures[i].along);
+	}
+	return curvatures;
 }
 
-static enum gz_result make_all_points(const struct making_marks *making)
+/* Write down what is to be made of an object. What was written is freed with the order. */
+static enum gz_result fill_task(const struct gz_illustrate_scene *scene, size_t index,
+				struct gz_marks_task *task)
 {
-	enum gz_result result = GZ_OK;
-	for (size_t i = 0; i < making->scene->count && result == GZ_OK; i++)
-		if (making->scene->items[i].marks.points_for < making->in_all)
-			result = make_points(making, i);
-	return result;
-}
-
-static enum gz_result find_directions(const struct gz_mesh *mesh, float (*directions)[3])
-{
-	struct gz_curvature *curvatures = malloc((mesh->vertex_count + 1) * sizeof *curvatures);
-	enum gz_result result = curvatures ? gz_mesh_curvatures(mesh, curvatures) : GZ_ERR_NO_MEM;
-	if (result == GZ_OK)
-		result = gz_hatch_directions(mesh, curvatures, DIRECTION_PASSES, directions);
-	free(curvatures);
-	return result;
-}
-
-/* The strokes of one mesh in one direction. The second one's thread turns the directions. */
-static enum gz_result trace_strokes(const struct making_marks *making, size_t index, size_t across)
-{
-	const struct gz_mesh *mesh = &making->scene->meshes.shown[index];
-	const struct gz_mesh_points *points = &making->points[index];
-	const float(*directions)[3] = (const float(*)[3])making->directions[index].vertices;
-	struct gz_hatch_strokes *strokes = &making->scene->items[index].marks.strokes[across];
-	const double distance_mm =
-		STROKE_DISTANCE * sqrt(points->area_mm2 / fmax(1, (double)points->count));
-	if (points->count == 0)
-		return GZ_OK;
-	if (across == 0)
-		return gz_hatch_strokes_make(mesh, directions, points, distance_mm, strokes);
-	float(*crossing)[3] = malloc((mesh->vertex_count + 1) * sizeof *crossing);
-	if (!crossing)
+	const struct gz_illustrate_item *item = &scene->items[index];
+	const struct gz_object *object = &scene->meshes.items[index].object;
+	const struct gz_mesh *mesh = &scene->meshes.shown[index];
+	char name[GZ_ILLUSTRATE_KEPT_SIZE];
+	gz_illustrate_kept_name(object, "", name);
+	name[strlen(name) - 1] = '\0'; /* the dot */
+	task->item = index;
+	task->keeps = item->keeps;
+	task->name = strdup(name);
+	task->input = object->mesh && object->input ? strdup(object->input) : NULL;
+	if (!task->name || (object->mesh && object->input && !task->input))
 		return GZ_ERR_NO_MEM;
-	gz_hatch_cross_directions(mesh, directions, crossing);
-	const enum gz_result result = gz_hatch_strokes_make(mesh, (const float(*)[3])crossing,
-							    points, distance_mm, strokes);
-	free(crossing);
-	return result;
-}
-
-static void find_directions_part(void *user, size_t part, int worker)
-{
-	const struct making_marks *making = user;
-	(void)worker;
-	if (making->scene->items[part].marks.strokes_for < making->in_all)
-		making->results[part] = find_directions(&making->scene->meshes.shown[part],
-							making->directions[part].vertices);
-}
-
-static void trace_part(void *user, size_t part, int worker)
-{
-	const struct making_marks *making = user;
-	const size_t index = part / GZ_HATCH_DIRECTIONS;
-	(void)worker;
-	if (making->scene->items[index].marks.strokes_for < making->in_all)
-		making->results[part] = trace_strokes(making, index, part % GZ_HATCH_DIRECTIONS);
-}
-
-static enum gz_result first_failure(const struct making_marks *making, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		if (making->results[i] != GZ_OK)
-			return making->results[i];
-	return GZ_OK;
-}
-
-/* Points to start strokes from, and room for directions. */
-static enum gz_result prepare_strokes(const struct making_marks *making)
-{
-	const size_t count = making->scene->count;
-	for (size_t i = 0; i < count; i++) {
-		if (making->scene->items[i].marks.strokes_for >= making->in_all)
-			continue;
-		for (int k = 0; k < GZ_HATCH_DIRECTIONS; k++)
-			gz_hatch_strokes_free(&making->scene->items[i].marks.strokes[k]);
-		const enum gz_result result =
-			spread_points(making, i, STROKES_PER_POINT, &making->points[i]);
-		if (result != GZ_OK)
-			return result;
-		making->directions[i].vertices =
-			malloc((making->scene->meshes.shown[i].vertex_count + 1) *
-			       sizeof *making->directions[i].vertices);
-		if (!making->directions[i].vertices)
+	if (task->kind == GZ_DRAWING_HATCHES) {
+		task->curvatures = copy_curvatures(item, mesh->vertex_count);
+		if (!task->curvatures)
 			return GZ_ERR_NO_MEM;
 	}
+	if (scene->waits_for_marks) {
+		task->mesh = *mesh;
+		return GZ_OK;
+	}
+	return gz_mesh_copy(mesh, &task->mesh);
+}
+
+/* How many points each task has: by its share of the area of all objects. */
+static enum gz_result share_points(const struct gz_illustrate_scene *scene,
+				   struct gz_marks_order *order)
+{
+	double *areas = calloc(scene->count, sizeof *areas), area = 0;
+	if (!areas)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < scene->count; i++) {
+		areas[i] = area_of_mesh(&scene->meshes.shown[i]);
+		area += areas[i];
+	}
+	for (size_t i = 0; i < order->count; i++) {
+		struct gz_marks_task *task = &order->tasks[i];
+		const double part = area > 0 ? areas[task->item] / area : 0;
+		const double share = task->kind == GZ_DRAWING_STIPPLES ? 1 : STROKES_PER_POINT;
+		task->points = (size_t)fmax(POINTS_LEAST, order->in_all * share * part);
+	}
+	free(areas);
 	return GZ_OK;
 }
 
-static enum gz_result make_all_strokes(struct making_marks *making)
+static enum gz_result write_order(const struct gz_illustrate_scene *scene,
+				  const struct gz_illustration_look *look, unsigned in_all,
+				  struct gz_marks_order *order)
 {
-	const size_t count = making->scene->count;
-	making->points = calloc(count, sizeof *making->points);
-	making->directions = calloc(count, sizeof *making->directions);
-	making->results = calloc(count * GZ_HATCH_DIRECTIONS, sizeof *making->results);
-	enum gz_result result = GZ_ERR_NO_MEM;
-	if (making->points && making->directions && making->results)
-		result = prepare_strokes(making);
+	enum gz_result result = GZ_OK;
+	order->log = scene->log;
+	order->in_all = in_all;
+	order->owns_meshes = !scene->waits_for_marks;
+	order->tasks = calloc(scene->count, sizeof *order->tasks);
+	if (!order->tasks)
+		return GZ_ERR_NO_MEM;
+	for (size_t i = 0; i < scene->count && result == GZ_OK; i++) {
+		if (!item_lacks_marks(&scene->items[i], look, in_all))
+			continue;
+		struct gz_marks_task *task = &order->tasks[order->count++];
+		task->kind = gz_illustrate_item_asks(&scene->items[i], look);
+		result = fill_task(scene, i, task);
+	}
+	return result == GZ_OK ? share_points(scene, order) : result;
+}
+
+/* Move what was made to the objects. */
+static void take_marks(struct gz_illustrate_scene *scene, struct gz_marks_order *order)
+{
+	for (size_t i = 0; i < order->count; i++) {
+		struct gz_marks_task *task = &order->tasks[i];
+		struct gz_illustrate_marks *marks = &scene->items[task->item].marks;
+		if (made_for(&task->made, task->kind) == 0)
+			continue;
+		if (task->kind == GZ_DRAWING_STIPPLES) {
+			gz_stipple_points_free(&marks->points);
+			marks->points = task->made.points;
+			marks->points_for = task->made.points_for;
+			task->made.points = (struct gz_stipple_points) { 0 };
+			continue;
+		}
+		for (int k = 0; k < GZ_HATCH_DIRECTIONS; k++) {
+			gz_hatch_strokes_free(&marks->strokes[k]);
+			marks->strokes[k] = task->made.strokes[k];
+			task->made.strokes[k] = (struct gz_hatch_strokes) { 0 };
+		}
+		marks->strokes_for = task->made.strokes_for;
+	}
+}
+
+static enum gz_result make_now(struct gz_illustrate_scene *scene, struct gz_marks_order *order,
+			       struct gz_workers *workers, bool *out_new)
+{
+	const enum gz_result result = gz_marks_order_make(order, workers);
 	if (result == GZ_OK) {
-		gz_workers_run(making->workers, find_directions_part, making, count);
-		result = first_failure(making, count);
+		take_marks(scene, order);
+		*out_new = true;
 	}
-	if (result == GZ_OK) {
-		gz_workers_run(making->workers, trace_part, making, count * GZ_HATCH_DIRECTIONS);
-		result = first_failure(making, count * GZ_HATCH_DIRECTIONS);
-	}
-	for (size_t i = 0; i < count; i++) {
-		struct gz_illustrate_marks *marks = &making->scene->items[i].marks;
-		if (marks->strokes_for < making->in_all)
-			marks->strokes_for = result == GZ_OK ? making->in_all : 0;
-		if (making->points)
-			gz_mesh_points_free(&making->points[i]);
-		if (making->directions)
-			free(making->directions[i].vertices);
-	}
-	free(making->points);
-	free(making->directions);
-	free(making->results);
 	return result;
 }
 
-static bool lacks_marks(const struct gz_illustrate_scene *scene,
-			enum gz_illustration_drawing drawing, unsigned in_all)
+/* Take what a thread has made, if it is done. Meshes that have changed since have no use for it. */
+static enum gz_result take_when_done(struct gz_illustrate_scene *scene, bool *out_new)
 {
-	for (size_t i = 0; i < scene->count; i++) {
-		const struct gz_illustrate_marks *marks = &scene->items[i].marks;
-		if ((drawing == GZ_DRAWING_STIPPLES && marks->points_for < in_all) ||
-		    (drawing == GZ_DRAWING_HATCHES && marks->strokes_for < in_all))
-			return true;
+	struct gz_marks_order order = { 0 };
+	if (!scene->maker)
+		return GZ_OK;
+	const bool wanted = scene->maker_for == scene->meshes_made;
+	if (!wanted)
+		gz_marks_maker_stop(scene->maker);
+	if (!gz_marks_maker_done(scene->maker))
+		return GZ_OK;
+	enum gz_result result = gz_marks_maker_end(&scene->maker, &order);
+	if (result == GZ_OK && wanted) {
+		take_marks(scene, &order);
+		*out_new = true;
 	}
-	return false;
+	gz_marks_order_free(&order);
+	return wanted ? result : GZ_OK;
 }
 
 enum gz_result gz_illustrate_marks_make(struct gz_illustrate_scene *scene,
 					const struct gz_illustrate_shot *shot,
 					struct gz_workers *workers, bool *out_new)
 {
-	const enum gz_illustration_drawing drawing = gz_illustration_look_drawing(shot->look);
-	struct making_marks making = { .scene = scene,
-				       .workers = workers,
-				       .in_all = points_for(shot->plan) };
-	/* a shot without pixels asks only what is at a place */
-	if (shot->plan->width < 1 || !lacks_marks(scene, drawing, making.in_all))
+	const unsigned in_all = points_for(shot->plan);
+	if (shot->plan->width < 1) /* it asks only what is at a place */
 		return GZ_OK;
-	making.areas = calloc(scene->count, sizeof *making.areas);
-	if (!making.areas)
-		return GZ_ERR_NO_MEM;
-	for (size_t i = 0; i < scene->count; i++) {
-		making.areas[i] = area_of_mesh(&scene->meshes.shown[i]);
-		making.area += making.areas[i];
+	enum gz_result result = take_when_done(scene, out_new);
+	scene->marks_coming = false;
+	if (result != GZ_OK || !any_lacks_marks(scene, shot->look, in_all))
+		return result;
+	scene->marks_coming = !scene->waits_for_marks;
+	if (scene->maker)
+		return GZ_OK;
+	struct gz_marks_order order = { 0 };
+	result = write_order(scene, shot->look, in_all, &order);
+	if (result == GZ_OK && scene->waits_for_marks) {
+		result = make_now(scene, &order, workers, out_new);
+	} else if (result == GZ_OK) {
+		scene->maker_for = scene->meshes_made;
+		result = gz_marks_maker_start(&order, gz_workers_count(workers), &scene->maker);
 	}
-	const enum gz_result result = drawing == GZ_DRAWING_STIPPLES ? make_all_points(&making)
-								     : make_all_strokes(&making);
-	*out_new = true;
-	free(making.areas);
+	gz_marks_order_free(&order);
 	return result;
 }

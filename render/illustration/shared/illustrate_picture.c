@@ -84,7 +84,7 @@ struct illustrate_composing {
 /* Whether marks draw the picture. */
 static bool is_drawn(const struct gz_illustrate_picture *picture)
 {
-	return picture->drawing.kind != GZ_DRAWING_GREY;
+	return picture->drawing.drawn;
 }
 
 /* Compose the map of one layer. Those behind the front one take over its tone curve. */

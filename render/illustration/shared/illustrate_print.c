@@ -171,7 +171,7 @@ static enum gz_result find_print_size(const struct gz_illustrate_drawing *drawin
 				      int out_size_px[2])
 {
 	const bool png = gz_path_ends(print->path, ".png");
-	if (drawing->kind == GZ_DRAWING_GREY || drawing->width < 1) {
+	if (!drawing->drawn || drawing->width < 1) {
 		gz_err(log,
 		       "%s: the picture is grey, so there are no marks to print; set "
 		       "illustration.drawing to stipples or hatches, and illustration.show to "

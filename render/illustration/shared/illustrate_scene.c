@@ -20,6 +20,7 @@ static void free_items(struct gz_illustrate_item *items, size_t count)
 {
 	for (size_t i = 0; items && i < count; i++) {
 		free(items[i].vertices);
+		free(items[i].along);
 		gz_illustrate_marks_free(&items[i].marks);
 	}
 	free(items);
@@ -54,7 +55,8 @@ static enum gz_result check_illustrated(const struct gz_object *objects, size_t 
 	for (size_t i = 0; i < count; i++) {
 		const struct gz_object_style *style = style_of(&objects[i]);
 		if (objects[i].id < 1 || objects[i].id > GZ_ILLUSTRATE_ID_MAX ||
-		    !is_share(style->importance) || !is_share(style->transparency))
+		    !is_share(style->importance) || !is_share(style->transparency) ||
+		    !gz_illustration_said(style->drawing, style->hatch_direction))
 			return GZ_ERR_INVAL;
 	}
 	return count > 0 ? GZ_OK : GZ_ERR_INVAL;
@@ -102,6 +104,8 @@ static enum gz_result make_lists(const struct gz_object *objects, size_t count,
 		const size_t place = objects[i].id - 1;
 		items[i].look = number_of_template(lists, objects[i].shading_template);
 		items[i].opacity = (float)(1 - style->transparency);
+		items[i].said_drawing = style->drawing;
+		items[i].said_direction = style->hatch_direction;
 		lists->importances[place] = (float)style->importance;
 		lists->opacities[place] = items[i].opacity;
 		lists->looks[place] = items[i].look;
@@ -133,9 +137,12 @@ static bool take_known(struct gz_illustrate_scene *scene, const struct gz_object
 		struct gz_illustrate_item *from = &scene->items[old];
 		items[i].key = from->key;
 		items[i].vertices = from->vertices;
+		items[i].along = from->along;
 		items[i].marks = from->marks;
+		items[i].keeps = from->keeps;
 		from->key.known = false;
 		from->vertices = NULL;
+		from->along = NULL;
 		from->marks = (struct gz_illustrate_marks) { 0 };
 	}
 	return same;
@@ -247,28 +254,38 @@ void gz_illustrate_kept_name(const struct gz_object *object, const char *what,
 			out_ending[i] = '_';
 }
 
-/* Make the vertices of an object. Those of files are kept, each of one input in a file of its own;
- * surfaces of volumes are not, because there is one for each isovalue. */
+static void forget_item(struct gz_illustrate_item *item)
+{
+	free(item->vertices);
+	free(item->along);
+	item->vertices = NULL;
+	item->along = NULL;
+	gz_illustrate_marks_free(&item->marks);
+	item->key.known = false;
+}
+
+/* Make the vertices of an object. What is made of meshes of files is kept, each of one input in a
+ * file of its own. Of volumes only the surfaces of the first picture are: while an isovalue moves,
+ * there is one for each, and few of them come again. Those files are the user's alone. */
 static enum gz_result prepare_item(struct gz_illustrate_scene *scene, size_t index,
 				   struct gz_workers *workers)
 {
 	struct gz_illustrate_item *item = &scene->items[index];
 	const struct gz_object *object = &scene->meshes.items[index].object;
-	const bool is_kept = object->mesh && object->input;
 	char ending[GZ_ILLUSTRATE_KEPT_SIZE];
 	gz_illustrate_kept_name(object, "shading", ending);
-	const struct gz_mesh_cache_place place = { object->input, ending };
+	const struct gz_mesh_cache_place place = { object->mesh ? object->input : NULL, ending };
 	struct gz_shading_vertices vertices;
-	free(item->vertices);
-	item->vertices = NULL;
-	gz_illustrate_marks_free(&item->marks);
-	item->key.known = false;
+	forget_item(item);
+	item->keeps = object->mesh ? object->input != NULL : scene->meshes_made == 0;
 	enum gz_result result =
-		gz_shading_vertices_make(&scene->meshes.shown[index], is_kept ? &place : NULL,
+		gz_shading_vertices_make(&scene->meshes.shown[index], item->keeps ? &place : NULL,
 					 workers, scene->log, &vertices);
 	if (result != GZ_OK)
 		return result;
 	result = pack_vertices(&vertices, &item->vertices);
+	item->along = vertices.along;
+	vertices.along = NULL;
 	gz_shading_vertices_free(&vertices);
 	if (result == GZ_OK)
 		item->key = key_of(scene, index);
@@ -378,6 +395,9 @@ enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene,
 
 void gz_illustrate_scene_free(struct gz_illustrate_scene *scene)
 {
+	if (scene->maker)
+		gz_marks_maker_stop(scene->maker);
+	(void)gz_marks_maker_end(&scene->maker, NULL);
 	free_items(scene->items, scene->count);
 	free_lists(scene);
 	scene->items = NULL;

@@ -53,16 +53,20 @@ struct gz_illustrate_template {
 
 /** One object's vertices. */
 struct gz_illustrate_item {
-	unsigned look; /**< its template: see struct gz_illustrate_scene */
-	float opacity; /**< [0, 1] */
+	unsigned look;                    /**< its template: see struct gz_illustrate_scene */
+	float opacity;                    /**< [0, 1] */
+	int said_drawing, said_direction; /**< as struct gz_object_style has them */
 	struct gz_illustrate_key key;
 	struct gz_illustrate_vertex *vertices; /**< of the mesh that is shown; NULL: not made */
+	float (*along)[3];                     /**< likewise; where they bend most, of length 1 */
 	struct gz_illustrate_marks marks;      /**< likewise */
+	bool keeps;                            /**< what is made of the mesh is kept in files */
 };
 
-/** All of it. Zero-initialised with log set, it shows nothing. */
+/** All of it. Zero-initialised with log and waits_for_marks set, it shows nothing. */
 struct gz_illustrate_scene {
 	const struct gz_log *log; /**< may be NULL; borrowed */
+	bool waits_for_marks;     /**< pictures wait until their marks are made */
 	struct gz_surface_meshes meshes;
 	struct gz_illustrate_item *items; /**< of the meshes; count of them */
 	size_t count;
@@ -80,6 +84,9 @@ struct gz_illustrate_scene {
 	uint64_t made;                  /**< how often any of it was made */
 	uint64_t meshes_made;           /**< how often the list of meshes became another */
 	bool built;                     /**< the ball is that of the items' keys */
+	bool marks_coming;              /**< the last picture lacks marks that are being made */
+	struct gz_marks_maker *maker;   /**< makes them; NULL: none does */
+	uint64_t maker_for;             /**< the meshes_made of its marks */
 };
 
 /**
@@ -127,7 +134,7 @@ enum gz_result gz_illustrate_scene_prepare(struct gz_illustrate_scene *scene,
 void gz_illustrate_kept_name(const struct gz_object *object, const char *what,
 			     char out_ending[GZ_ILLUSTRATE_KEPT_SIZE]);
 
-/** Free all but the log. */
+/** Free all but the log. Waits for a thread that makes marks. */
 void gz_illustrate_scene_free(struct gz_illustrate_scene *scene);
 
 #endif

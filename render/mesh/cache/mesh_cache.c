@@ -207,46 +207,97 @@ static bool read_whole(int fd, unsigned char *bytes, size_t size)
 	return true;
 }
 
-/* Read an open file of the length that it has to have, or else as much as a head. */
-static enum gz_result load_open_file(const char *path, int fd, const struct gz_mesh_key *key,
-				     const struct gz_mesh_cache_array *arrays, size_t count,
-				     const struct gz_log *log)
+/* What is wanted of a file. */
+struct cache_wish {
+	const struct gz_mesh_key *key;
+	const struct gz_mesh_cache_array *arrays; /* filled; NULL: whole */
+	size_t count;
+	struct gz_mesh_cache_array *whole; /* made, as long as the file is */
+	size_t floats_most;                /* of whole */
+	const struct gz_log *log;
+};
+
+/* How many floats a file of this size is to have. */
+static size_t floats_wanted(const struct cache_wish *wish, uint64_t size)
 {
-	const size_t right_size = HEAD_SIZE + count_floats(arrays, count) * sizeof(float);
+	if (wish->arrays)
+		return count_floats(wish->arrays, wish->count);
+	const uint64_t floats = size > HEAD_SIZE ? (size - HEAD_SIZE) / sizeof(float) : 0;
+	return floats < wish->floats_most ? (size_t)floats : wish->floats_most;
+}
+
+/* Take what is wanted from a file's bytes. */
+static enum gz_result parse_wish(const struct cache_wish *wish, const char *path,
+				 const unsigned char *bytes, size_t size, size_t floats)
+{
+	if (wish->arrays)
+		return gz_mesh_cache_parse(path, bytes, size, wish->key, wish->arrays, wish->count,
+					   wish->log);
+	const struct gz_mesh_cache_array whole = { malloc((floats + 1) * sizeof(float)), floats };
+	if (!whole.values)
+		return GZ_ERR_NO_MEM;
+	const enum gz_result result =
+		gz_mesh_cache_parse(path, bytes, size, wish->key, &whole, 1, wish->log);
+	if (result == GZ_OK)
+		*wish->whole = whole;
+	else
+		free(whole.values);
+	return result;
+}
+
+/* Read an open file of the length that it has to have, or else as much as a head. */
+static enum gz_result load_open_file(const char *path, int fd, const struct cache_wish *wish)
+{
 	struct stat status;
 	if (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
-		gz_warn(log, "%s: not used, because it is no regular file", path);
+		gz_warn(wish->log, "%s: not used, because it is no regular file", path);
 		return GZ_ERR_IO;
 	}
+	const size_t floats = floats_wanted(wish, (uint64_t)status.st_size);
+	const size_t right_size = HEAD_SIZE + floats * sizeof(float);
 	/* One byte more than is right tells a file that is too long. */
 	const size_t size =
 		(uint64_t)status.st_size > right_size ? right_size + 1 : (size_t)status.st_size;
 	unsigned char *bytes = malloc(size + 1);
 	enum gz_result result = bytes ? GZ_OK : GZ_ERR_NO_MEM;
 	if (bytes && !read_whole(fd, bytes, size)) {
-		gz_warn(log, "%s: not used, because it cannot be read", path);
+		gz_warn(wish->log, "%s: not used, because it cannot be read", path);
 		result = GZ_ERR_IO;
 	}
 	if (result == GZ_OK)
-		result = gz_mesh_cache_parse(path, bytes, size, key, arrays, count, log);
+		result = parse_wish(wish, path, bytes, size, floats);
 	free(bytes);
 	return result;
 }
 
-static enum gz_result load_file(const char *path, const struct gz_mesh_key *key,
-				const struct gz_mesh_cache_array *arrays, size_t count,
-				const struct gz_log *log)
+static enum gz_result load_file(const char *path, const struct cache_wish *wish)
 {
 	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
 	if (fd < 0 && (errno == ENOENT || errno == ENOTDIR))
 		return GZ_ERR_NOT_FOUND;
 	if (fd < 0) {
-		gz_warn(log, "%s: not used, because it cannot be read: %s", path, strerror(errno));
+		gz_warn(wish->log, "%s: not used, because it cannot be read: %s", path,
+			strerror(errno));
 		return GZ_ERR_IO;
 	}
-	const enum gz_result result = load_open_file(path, fd, key, arrays, count, log);
+	const enum gz_result result = load_open_file(path, fd, wish);
 	(void)close(fd);
 	return result;
+}
+
+static enum gz_result load_wish(const struct gz_mesh_cache_place *place,
+				const struct cache_wish *wish)
+{
+	char path[GZ_PATH_SIZE];
+	enum gz_result kept = GZ_ERR_NOT_FOUND;
+	if (path_in_user_cache(place, wish->key, path))
+		kept = load_file(path, wish);
+	if (kept == GZ_OK)
+		(void)utimensat(AT_FDCWD, path, NULL, 0);
+	if (kept == GZ_OK || !path_beside_input(place, path))
+		return kept;
+	const enum gz_result result = load_file(path, wish);
+	return result == GZ_ERR_NOT_FOUND ? kept : result;
 }
 
 enum gz_result gz_mesh_cache_load(const struct gz_mesh_cache_place *place,
@@ -254,16 +305,19 @@ enum gz_result gz_mesh_cache_load(const struct gz_mesh_cache_place *place,
 				  const struct gz_mesh_cache_array *arrays, size_t count,
 				  const struct gz_log *log)
 {
-	char path[GZ_PATH_SIZE];
-	enum gz_result kept = GZ_ERR_NOT_FOUND;
-	if (path_in_user_cache(place, key, path))
-		kept = load_file(path, key, arrays, count, log);
-	if (kept == GZ_OK)
-		(void)utimensat(AT_FDCWD, path, NULL, 0);
-	if (kept == GZ_OK || !path_beside_input(place, path))
-		return kept;
-	const enum gz_result result = load_file(path, key, arrays, count, log);
-	return result == GZ_ERR_NOT_FOUND ? kept : result;
+	const struct cache_wish wish = { .key = key, .arrays = arrays, .count = count, .log = log };
+	return load_wish(place, &wish);
+}
+
+enum gz_result gz_mesh_cache_load_whole(const struct gz_mesh_cache_place *place,
+					const struct gz_mesh_key *key, size_t floats_most,
+					const struct gz_log *log,
+					struct gz_mesh_cache_array *out_array)
+{
+	const struct cache_wish wish = {
+		.key = key, .whole = out_array, .floats_most = floats_most, .log = log
+	};
+	return load_wish(place, &wish);
 }
 
 /* ---- trimming ---- */

@@ -92,6 +92,18 @@ enum gz_result gz_mesh_cache_load(const struct gz_mesh_cache_place *place,
 				  const struct gz_log *log);
 
 /**
+ * gz_mesh_cache_load() of one array whose length only the file knows. It is checked alike, and what
+ * is allocated is at most as long as the file is.
+ *
+ * @param floats_most  a longer file is refused
+ * @param[out] out_array  written on GZ_OK; the caller frees its values
+ */
+enum gz_result gz_mesh_cache_load_whole(const struct gz_mesh_cache_place *place,
+					const struct gz_mesh_key *key, size_t floats_most,
+					const struct gz_log *log,
+					struct gz_mesh_cache_array *out_array);
+
+/**
  * Write the arrays to a file in the user's cache folder: gazecast/meshes below $XDG_CACHE_HOME or
  * ~/.cache (XDG Base Directory Specification). If that cannot be written, beside the input. The
  * file takes its name when it is complete.
