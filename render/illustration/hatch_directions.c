@@ -17,7 +17,7 @@
 enum {
 	PASSES_MAX = 1000,
 	TENSOR = 6,      /* xx, yy, zz, xy, xz, yz */
-	FIELD_FLOATS = 7 /* and the weights that are in it */
+	FIELD_FLOATS = 8 /* and the weights that are in it; the last is 0, for whole SIMD words */
 };
 
 /* Edge of the coarse graph's cubes, in mean edges. Chosen: it costs about as much as the mesh. */

@@ -424,13 +424,14 @@ static bool trace_stroke(struct tracing *tracing, const struct gz_mesh_point *po
 	tracer.shares[2] = (double)point->across[1];
 	tracer.shares[0] = fmax(0, 1 - tracer.shares[1] - tracer.shares[2]);
 	place_tracer(tracing, &tracer);
+	/* most starts are too near to a stroke */
+	const struct traced_node start = node_of_tracer(tracing, &tracer, point->triangle, 0);
+	if (!node_is_clear(tracing, &start, tracing->distance))
+		return true;
 	const float *direction = tracing->directions[tracing->mesh->triangles[point->triangle][0]];
 	for (int axis = 0; axis < 3; axis++)
 		tracer.way[axis] = (double)direction[axis];
 	if (!gz_normalise3(tracer.way) || !turn_along(tracing, &tracer))
-		return true;
-	const struct traced_node start = node_of_tracer(tracing, &tracer, point->triangle, 0);
-	if (!node_is_clear(tracing, &start, tracing->distance))
 		return true;
 	const size_t first = tracing->node_count;
 	const double share = (double)(gz_mixed_bits(7, rank) >> 11) * 0x1p-53;
