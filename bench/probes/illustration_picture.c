@@ -110,6 +110,7 @@ static enum gz_result set_up_stage(const struct picture_request *request, const 
 	if (result == GZ_OK)
 		result = resolve_settings(request, &stage->look.single);
 	stage->look.source = GZ_ILLUSTRATION_SINGLE;
+	stage->look.pen_width = 2; /* no marks are drawn, but it has to be in range */
 	if (result == GZ_OK)
 		result = gz_illustrate_caster_create(&params, log, &stage->caster);
 	if (result != GZ_OK)
@@ -183,5 +184,7 @@ int main(int argc, char **argv)
 	gz_plan_free(&stage.plan);
 	gz_image_free(&stage.image);
 	gz_scene_free(&stage.scene);
+	if (result != GZ_OK)
+		fprintf(stderr, "illustration_picture: %s\n", gz_result_text(result));
 	return result == GZ_OK ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -183,6 +183,77 @@ static void spectrum_of_any_beginning_has_the_gap_of_blue_noise(void **state)
 	gz_mesh_free(&mesh);
 }
 
+/* Directions of the first points of a ball around the origin. */
+static void find_directions(const struct gz_mesh *mesh, const struct gz_mesh_points *points,
+			    size_t count, double (*directions)[3])
+{
+	for (size_t i = 0; i < count; i++) {
+		float place[3];
+		double square = 0;
+		gz_mesh_point_place(mesh, &points->points[i], place);
+		for (int axis = 0; axis < 3; axis++)
+			square += (double)place[axis] * (double)place[axis];
+		for (int axis = 0; axis < 3; axis++)
+			directions[i][axis] = (double)place[axis] / sqrt(square);
+	}
+}
+
+/* The spectrum on the sphere: the mean square of the points' spherical harmonics of each degree, by
+ * the addition theorem sum over i, j of P_l(cos between i and j) / count. That of random points is
+ * 1 for every degree. */
+static void find_spherical_spectrum(const double (*directions)[3], size_t count, int degrees,
+				    double *out_power)
+{
+	for (int l = 0; l < degrees; l++)
+		out_power[l] = 1; /* of each point with itself */
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < i; k++) {
+			const double x = directions[i][0] * directions[k][0] +
+					 directions[i][1] * directions[k][1] +
+					 directions[i][2] * directions[k][2];
+			double before = 1, now = x;
+			for (int l = 1; l < degrees; l++) {
+				out_power[l] += 2 * now / (double)count;
+				const double next = ((2 * l + 1) * x * now - l * before) / (l + 1);
+				before = now;
+				now = next;
+			}
+		}
+}
+
+static double mean_of_degrees(const double *power, double from, double to)
+{
+	double sum = 0;
+	int count = 0;
+	for (int l = (int)ceil(from); l < (int)to; l++, count++)
+		sum += power[l];
+	return sum / count;
+}
+
+/* On a surface that is bent all over there is the gap, too. */
+static void spectrum_on_a_ball_has_the_gap_of_blue_noise(void **state)
+{
+	(void)state;
+	enum { DEGREES = 120 };
+	static double directions[2000][3], power[DEGREES];
+	const size_t counts[] = { 300, 700, 2000 };
+	struct gz_mesh mesh = surface_of(field_ball);
+	struct gz_mesh_points points = points_of(&mesh, 2000);
+	for (size_t i = 0; i < 3; i++) {
+		/* the degree whose wave is as long as the points' distance in a square lattice */
+		const double ring = sqrt(3.14159265 * (double)counts[i]);
+		find_directions(&mesh, &points, counts[i], directions);
+		find_spherical_spectrum((const double(*)[3])directions, counts[i], DEGREES, power);
+		const double gap = mean_of_degrees(power, 0.1 * ring, 0.6 * ring);
+		const double peak = mean_of_degrees(power, 0.9 * ring, 1.2 * ring);
+		print_message("%zu points: gap %.3f, peak %.3f\n", counts[i], gap, peak);
+		assert_true(gap < 0.15);
+		assert_true(peak > 1.1);
+	}
+	gz_mesh_points_free(&points);
+	gz_mesh_free(&mesh);
+}
+
 static void two_sides_of_a_thin_sheet_have_points_each(void **state)
 {
 	(void)state;
@@ -273,6 +344,7 @@ TEST_SUITE(mesh_points)
 		cmocka_unit_test(points_of_a_ring_keep_apart),
 		cmocka_unit_test(any_beginning_covers_the_surface),
 		cmocka_unit_test(spectrum_of_any_beginning_has_the_gap_of_blue_noise),
+		cmocka_unit_test(spectrum_on_a_ball_has_the_gap_of_blue_noise),
 		cmocka_unit_test(two_sides_of_a_thin_sheet_have_points_each),
 		cmocka_unit_test(points_lie_within_their_triangles),
 		cmocka_unit_test(points_are_the_same_for_any_number_of_threads),

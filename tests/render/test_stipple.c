@@ -259,6 +259,84 @@ static void turning_ball_shows_the_first_points_of_each_place(void **state)
 	gz_mesh_free(&mesh);
 }
 
+/* What share of all points' ranks may show at a point of the ball: by the rule, written anew. A
+ * projection shrinks an area by the cosine of its slant and by the square of its distance, and rays
+ * off the axis stretch it. Returns false where it might be hidden or out of the picture. */
+static bool share_of_ball(const struct gz_stipple_points *points, size_t i,
+			  const struct gz_camera *camera, float tone, double *out_share)
+{
+	double from[3], away2 = 0, facing = 0, axis_mm = 0, eye2 = 0, down = 0;
+	for (int axis = 0; axis < 3; axis++) {
+		const double eye = 100 * camera->eye[axis];
+		from[axis] = (double)points->places[i][axis] - eye;
+		away2 += from[axis] * from[axis];
+		facing -= from[axis] * (double)points->normals[i][axis];
+		axis_mm -= from[axis] * eye;
+		eye2 += eye * eye;
+	}
+	axis_mm /= sqrt(eye2);
+	facing /= sqrt(away2);
+	const double half = axis_mm * tan(camera->fov_deg / 2 * 3.14159265358979 / 180);
+	down = sqrt(fmax(0, away2 - axis_mm * axis_mm));
+	if (facing < 0.25 || down > 0.9 * half)
+		return false;
+	/* px² of a mm²: facing / cos of the angle to the axis, over the pixel's area there */
+	const double pixel_mm = 2 * half / EDGE;
+	const double px2_per_mm2 = facing * sqrt(away2) / axis_mm / (pixel_mm * pixel_mm);
+	*out_share = px2_per_mm2 * (double)gz_stipple_density(1 - tone, (float)facing, 1.2F);
+	return true;
+}
+
+/* What changes from one picture to the next may only follow the rule: a point that comes has a
+ * greater share than before, and one that goes a smaller one. */
+static void check_nesting(const struct gz_camera *cameras, int count, float tone)
+{
+	const struct gz_stipple_points *points = &points_of[DRAWN_BALL];
+	static bool shown[2][POINTS];
+	static double shares[2][POINTS];
+	struct drawn_picture picture = { 0 };
+	size_t compared = 0, come = 0, gone = 0, violations = 0;
+	for (int step = 0; step < count; step++) {
+		const int now = step % 2, before = 1 - now;
+		drawn_picture_make(DRAWN_BALL, &cameras[step], EDGE, tone, &picture);
+		mark_shown(DRAWN_BALL, &picture, shown[now]);
+		for (size_t i = 0; i < POINTS; i++) {
+			if (!share_of_ball(points, i, &cameras[step], tone, &shares[now][i]))
+				shares[now][i] = 0;
+			if (step == 0 || shares[now][i] == 0 || shares[before][i] == 0)
+				continue;
+			const double ratio = shares[now][i] / shares[before][i];
+			compared++;
+			come += !shown[before][i] && shown[now][i];
+			gone += shown[before][i] && !shown[now][i];
+			violations += !shown[before][i] && shown[now][i] && ratio < 1 - 1e-4;
+			violations += shown[before][i] && !shown[now][i] && ratio > 1 + 1e-4;
+		}
+	}
+	if (violations > 0)
+		fail_msg("tone %g: %zu violations of %zu", (double)tone, violations, compared);
+	assert_true(compared > 20000 && come + gone > 20);
+	drawn_picture_free(&picture);
+}
+
+static void dolly_and_turn_of_a_ball_follow_the_rule(void **state)
+{
+	(void)state;
+	enum { STEPS = 12 };
+	const float tones[] = { 0.85F, 0.6F, 0.35F, 0.15F };
+	struct gz_camera dolly[STEPS], turn[STEPS], both[STEPS];
+	for (int step = 0; step < STEPS; step++) {
+		dolly[step] = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 260 - 10 * step, 15);
+		turn[step] = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 170, 4.0 * step);
+		both[step] = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 150 + 8 * step, 3.0 * step);
+	}
+	for (size_t i = 0; i < sizeof tones / sizeof tones[0]; i++) {
+		check_nesting(dolly, STEPS, tones[i]);
+		check_nesting(turn, STEPS, tones[i]);
+		check_nesting(both, STEPS, tones[i]);
+	}
+}
+
 static void hidden_points_do_not_shine_through(void **state)
 {
 	(void)state;
@@ -697,6 +775,7 @@ TEST_SUITE(stipple)
 		cmocka_unit_test(zoom_only_adds_points),
 		cmocka_unit_test(dolly_only_adds_points),
 		cmocka_unit_test(turning_ball_shows_the_first_points_of_each_place),
+		cmocka_unit_test(dolly_and_turn_of_a_ball_follow_the_rule),
 		cmocka_unit_test(hidden_points_do_not_shine_through),
 		cmocka_unit_test(far_side_of_a_ball_is_not_drawn),
 		cmocka_unit_test(board_from_behind_shows_only_with_backs),

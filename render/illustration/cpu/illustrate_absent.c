@@ -68,6 +68,12 @@ enum gz_result gz_illustrate_caster_print(const struct gz_illustrate_caster *cas
 	return GZ_ERR_UNSUPPORTED;
 }
 
+size_t gz_illustrate_caster_triangles(const struct gz_illustrate_caster *caster)
+{
+	(void)caster;
+	return 0;
+}
+
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)
 {
 	(void)caster;

@@ -324,6 +324,11 @@ enum gz_result gz_illustrate_caster_print(const struct gz_illustrate_caster *cas
 					   caster->log);
 }
 
+size_t gz_illustrate_caster_triangles(const struct gz_illustrate_caster *caster)
+{
+	return gz_surface_meshes_triangles(&caster->scene.meshes);
+}
+
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster)
 {
 	return caster->description;

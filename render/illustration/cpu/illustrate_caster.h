@@ -81,6 +81,9 @@ enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
 enum gz_result gz_illustrate_caster_print(const struct gz_illustrate_caster *caster,
 					  const struct gz_print *print);
 
+/** Triangles of all that is shown, as of the last picture. */
+size_t gz_illustrate_caster_triangles(const struct gz_illustrate_caster *caster);
+
 /** One line for reports, such as "avx2, 2 threads"; owned by the caster. */
 const char *gz_illustrate_caster_describe(const struct gz_illustrate_caster *caster);
 
