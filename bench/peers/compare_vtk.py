@@ -2,8 +2,8 @@
 """Frames of a scene by VTK's ray casters and by gazeview, `standard` and `acuity`, in turn.
 
     apt-get install python3-vtk9 python3-numpy zstd xvfb xauth
-    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene
-    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/head.scene --vtk gpu --backend gl
+    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/study/head.scene
+    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/study/head.scene --vtk gpu --backend gl
 
 VTK and `standard` cast one ray a pixel at the scene's sampling rate without shading while the camera turns by
 0.01 degrees a frame, so that nothing is reused; `acuity` does so with the gaze at the object's centre and at

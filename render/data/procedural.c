@@ -57,7 +57,7 @@ double gz_noise(const double p[3])
 	return mix(low, high, w[2]);
 }
 
-const char *const gz_procedural_names[] = { "shells", "supernova", "chameleon", NULL };
+const char *const gz_procedural_names[] = { "shells", "supernova", "chameleon", "splash", NULL };
 
 /* 1 at t = 0, falling smoothly to 0 at |t| = 1 and beyond. */
 static double bump(double t)
@@ -170,6 +170,7 @@ struct making {
 	enum gz_procedural which;
 	struct gz_volume *volume;
 	struct gz_chameleon *chameleon; /* of that one alone */
+	struct gz_splash splash;
 	const struct gz_loading *loading;
 	atomic_int slices_done;
 	atomic_bool stopped;
@@ -183,6 +184,19 @@ static void put_voxel(struct gz_volume *volume, size_t index, double value, doub
 		((uint16_t *)volume->voxels)[index] = (uint16_t)(65535 * value + 0.5);
 	else
 		((float *)volume->voxels)[index] = (float)(scale * value);
+}
+
+/* Of all formulas but the chameleon's, which makes rows. */
+static double value_at(const struct making *making, const double p[3])
+{
+	switch (making->which) {
+	case GZ_PROCEDURAL_SHELLS:
+		return shells_at(p);
+	case GZ_PROCEDURAL_SPLASH:
+		return gz_splash_at(&making->splash, p);
+	default:
+		return supernova_at(p);
+	}
 }
 
 static double longest_mm(const struct gz_volume *volume)
@@ -235,9 +249,7 @@ static void fill_procedural_row(const struct making *making, int y, int z)
 	}
 	for (int x = 0; x < dims[0]; x++) {
 		p[0] = middle_of(volume, 0, x, longest);
-		double value =
-			making->which == GZ_PROCEDURAL_SHELLS ? shells_at(p) : supernova_at(p);
-		put_voxel(volume, row + (size_t)x, value, scale);
+		put_voxel(volume, row + (size_t)x, value_at(making, p), scale);
 	}
 }
 
@@ -274,6 +286,8 @@ static enum gz_result fill_with(struct making *making)
 static enum gz_result fill_volume(struct making *making)
 {
 	const struct gz_volume *volume = making->volume;
+	if (making->which == GZ_PROCEDURAL_SPLASH)
+		gz_splash_lay_out(&making->splash);
 	if (making->which != GZ_PROCEDURAL_CHAMELEON)
 		return fill_with(making);
 	double coarsest = volume->spacing[0];
@@ -290,7 +304,7 @@ static enum gz_result fill_volume(struct making *making)
 enum gz_voxel_type gz_procedural_type(enum gz_procedural which)
 {
 	static const enum gz_voxel_type types[GZ_PROCEDURAL_COUNT] = { GZ_VOXEL_U8, GZ_VOXEL_F32,
-								       GZ_VOXEL_U16 };
+								       GZ_VOXEL_U16, GZ_VOXEL_U8 };
 	return types[which];
 }
 

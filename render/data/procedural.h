@@ -38,4 +38,26 @@ struct gz_chameleon_row {
 void gz_chameleon_draw_row(const struct gz_chameleon *chameleon, const struct gz_chameleon_row *row,
 			   float *out_values);
 
+enum { GZ_SPLASH_FINGERS = 15 };
+
+/** A cone with round ends; a ball where both ends are one point. */
+struct gz_blob {
+	double from[3], axis[3]; /**< one end, and the way to the other */
+	double squared_length;   /**< of the axis */
+	double radius[2];        /**< at either end */
+};
+
+/** The splash of a drop in a puddle. Owns nothing. */
+struct gz_splash {
+	double fingers[GZ_SPLASH_FINGERS][2]; /**< directions of the crown's fingers */
+	struct gz_blob blobs[4 * GZ_SPLASH_FINGERS + 3];
+	int count; /**< of blobs */
+};
+
+/** Lay out all bodies of the splash. */
+void gz_splash_lay_out(struct gz_splash *splash);
+
+/** How much of a point is liquid, 0 to 1 and 0.5 at the surface; z is up. @param p  -1 to 1 */
+double gz_splash_at(const struct gz_splash *splash, const double p[3]);
+
 #endif

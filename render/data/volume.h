@@ -230,6 +230,7 @@ enum gz_procedural {
 	GZ_PROCEDURAL_SHELLS,    /**< nested shells with spherical harmonics, like a small atom */
 	GZ_PROCEDURAL_SUPERNOVA, /**< turbulent filaments round a hollow centre, float */
 	GZ_PROCEDURAL_CHAMELEON, /**< an animal: soft tissue, rough skin, thin bones, 16 bit */
+	GZ_PROCEDURAL_SPLASH,    /**< a drop that has fallen into a puddle: 1 inside the liquid */
 	GZ_PROCEDURAL_COUNT,
 };
 

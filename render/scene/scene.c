@@ -47,20 +47,26 @@ static enum gz_result find_named_file(const struct scene_loader *loader, const c
 	return GZ_ERR_NOT_FOUND;
 }
 
+/* The path of a file of data, which the scene may say where to get. */
+static enum gz_result find_data_file(const struct scene_loader *loader, const char *key,
+				     const char *name, char out_path[GZ_PATH_SIZE])
+{
+	const enum gz_result result = find_named_file(loader, key, name, out_path);
+	if (result == GZ_ERR_NOT_FOUND && loader->settings->volume_source[0])
+		gz_err(loader->log, "%s: its data are to be had here: %s", loader->name,
+		       loader->settings->volume_source);
+	return result;
+}
+
 /* The path of the volume's file. */
 static enum gz_result find_volume(const struct scene_loader *loader, char out_path[GZ_PATH_SIZE])
 {
 	const struct gz_scene_settings *settings = loader->settings;
 	const struct gz_scene_object *object = gz_scene_volume_object(settings);
-	enum gz_result result =
-		object ? find_named_file(loader, object->section,
-					 object->volume[0] ? object->volume : object->particles,
-					 out_path)
-		       : find_named_file(loader, "volume.file", settings->volume_file, out_path);
-	if (result == GZ_ERR_NOT_FOUND && settings->volume_source[0])
-		gz_err(loader->log, "%s: its data are to be had here: %s", loader->name,
-		       settings->volume_source);
-	return result;
+	return object ? find_data_file(loader, object->section,
+				       object->volume[0] ? object->volume : object->particles,
+				       out_path)
+		      : find_data_file(loader, "volume.file", settings->volume_file, out_path);
 }
 
 static enum gz_result make_procedural(const struct scene_loader *loader,
@@ -135,7 +141,7 @@ static enum gz_result load_mesh(const struct scene_loader *loader,
 				const struct gz_scene_object *object, struct gz_mesh *out_mesh)
 {
 	char path[GZ_PATH_SIZE];
-	const enum gz_result result = find_named_file(loader, object->section, object->mesh, path);
+	const enum gz_result result = find_data_file(loader, object->section, object->mesh, path);
 	return result == GZ_OK ? gz_mesh_read(path, loader->log, out_mesh) : result;
 }
 
@@ -153,7 +159,7 @@ static enum gz_result note_inputs(const struct scene_loader *loader, struct gz_s
 		const struct gz_scene_object *item = &objects->items[i];
 		const char *file = item->mesh[0] ? item->mesh : item->labels;
 		if (file[0])
-			result = find_named_file(loader, item->section, file, scene->inputs[i]);
+			result = find_data_file(loader, item->section, file, scene->inputs[i]);
 	}
 	return result;
 }
@@ -183,8 +189,7 @@ static enum gz_result load_label_volume(const struct scene_loader *loader,
 {
 	const struct gz_scene_settings *settings = loader->settings;
 	char path[GZ_PATH_SIZE];
-	const enum gz_result result =
-		find_named_file(loader, object->section, object->labels, path);
+	const enum gz_result result = find_data_file(loader, object->section, object->labels, path);
 	if (result != GZ_OK)
 		return result;
 	struct gz_loading loading = loader->loading ? *loader->loading : (struct gz_loading) { 0 };
@@ -207,8 +212,9 @@ static enum gz_result load_label_names(const struct scene_loader *loader,
 {
 	const char *named = loader->settings->labels.names;
 	char path[GZ_PATH_SIZE], beside[GZ_PATH_SIZE];
-	enum gz_result result = find_named_file(loader, named[0] ? "labels.names" : object->section,
-						named[0] ? named : object->labels, path);
+	enum gz_result result =
+		named[0] ? find_named_file(loader, "labels.names", named, path)
+			 : find_data_file(loader, object->section, object->labels, path);
 	if (result != GZ_OK)
 		return result;
 	if (named[0])
@@ -667,7 +673,7 @@ enum gz_result gz_scene_try(const struct gz_scene_source *source, const struct g
 		const struct gz_scene_object *item = &settings.objects.items[i];
 		const char *file = item->mesh[0] ? item->mesh : item->labels;
 		if (file[0])
-			result = find_named_file(&loader, item->section, file, path);
+			result = find_data_file(&loader, item->section, file, path);
 	}
 	if (result == GZ_OK && settings.labels.names[0])
 		result = find_named_file(&loader, "labels.names", settings.labels.names, path);

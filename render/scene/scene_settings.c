@@ -17,7 +17,8 @@ _Static_assert(GZ_SCENE_LIGHT == GZ_SCENE_RAYS + 1 && GZ_SCENE_CLIP == GZ_SCENE_
 	       "gz_ray_params_bind() fills nine tables");
 _Static_assert(sizeof(enum gz_projection) == sizeof(int), "a CHOICE option writes an int");
 
-static const char *const procedural_names[] = { "none", "shells", "supernova", "chameleon", NULL };
+static const char *const procedural_names[] = { "none",      "shells", "supernova",
+						"chameleon", "splash", NULL };
 static const char *const endian_names[] = { "little", "big", NULL };
 static const char *const projection_names[] = { "perspective", "orthographic", NULL };
 

@@ -1,6 +1,7 @@
 #include "suite.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/captured_log.h"
@@ -129,6 +130,7 @@ static void procedural_volumes_are_the_same_bits_everywhere(void **state)
 		{ GZ_PROCEDURAL_SHELLS, GZ_VOXEL_U8, 0xb1ee43d0248f6bf5 },
 		{ GZ_PROCEDURAL_SUPERNOVA, GZ_VOXEL_F32, 0x9deb32d3a6a708d0 },
 		{ GZ_PROCEDURAL_CHAMELEON, GZ_VOXEL_U16, 0xf3490e828045cc34 },
+		{ GZ_PROCEDURAL_SPLASH, GZ_VOXEL_U8, 0xa2299837ac7aebca },
 	};
 	static const int dims[3] = { 40, 36, 30 };
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -211,6 +213,63 @@ static void chameleon_is_air_and_tissue_and_bone(void **state)
 	gz_volume_free(&v);
 }
 
+/* Bodies of liquid: what a flood from each voxel of it reaches. */
+static int bodies_of(const struct gz_volume *v, uint8_t *liquid, size_t *stack)
+{
+	const size_t count = gz_volume_voxel_count(v);
+	const size_t steps[3] = { 1, (size_t)v->dims[0], (size_t)v->dims[0] * (size_t)v->dims[1] };
+	int bodies = 0;
+	for (size_t i = 0; i < count; i++)
+		liquid[i] = ((const uint8_t *)v->voxels)[i] > 127;
+	for (size_t i = 0; i < count; i++) {
+		if (!liquid[i])
+			continue;
+		size_t depth = 0;
+		bodies++;
+		liquid[i] = 0;
+		stack[depth++] = i;
+		while (depth > 0) {
+			const size_t at = stack[--depth];
+			for (int k = 0; k < 6; k++) {
+				const size_t next = k & 1 ? at + steps[k / 2] : at - steps[k / 2];
+				if (next < count && liquid[next]) {
+					liquid[next] = 0;
+					stack[depth++] = next;
+				}
+			}
+		}
+	}
+	return bodies;
+}
+
+static void splash_is_a_puddle_and_drops_that_the_box_does_not_cut(void **state)
+{
+	(void)state;
+	static const int dims[3] = { 168, 168, 96 };
+	struct gz_volume v;
+	assert_int_equal(
+		gz_volume_generate(&(struct gz_procedural_request) { GZ_PROCEDURAL_SPLASH, dims,
+								     cubes, GZ_VOXEL_U8 },
+				   NULL, NULL, &v),
+		GZ_OK);
+	const size_t count = gz_volume_voxel_count(&v);
+	const uint8_t *voxels = v.voxels;
+	for (size_t i = 0; i < count; i++) {
+		const int x = (int)(i % 168), y = (int)(i / 168 % 168), z = (int)(i / 168 / 168);
+		if (x == 0 || y == 0 || z == 0 || x == 167 || y == 167 || z == 95)
+			assert_int_equal(voxels[i], 0);
+	}
+	uint8_t *liquid = malloc(count);
+	size_t *stack = malloc(count * sizeof *stack);
+	assert_non_null(liquid);
+	assert_non_null(stack);
+	/* The puddle with its crown, the drop in the middle, and at least five that flew off. */
+	assert_in_range(bodies_of(&v, liquid, stack), 7, 32);
+	free(liquid);
+	free(stack);
+	gz_volume_free(&v);
+}
+
 static void procedural_volume_has_the_same_data_in_every_type(void **state)
 {
 	(void)state;
@@ -281,6 +340,7 @@ TEST_SUITE(volume)
 		cmocka_unit_test(procedural_volumes_are_the_same_bits_everywhere),
 		cmocka_unit_test(procedural_shape_keeps_its_proportions_whatever_the_spacing),
 		cmocka_unit_test(chameleon_is_air_and_tissue_and_bone),
+		cmocka_unit_test(splash_is_a_puddle_and_drops_that_the_box_does_not_cut),
 		cmocka_unit_test(procedural_volume_has_the_same_data_in_every_type),
 		cmocka_unit_test(procedural_volume_of_bad_dims_is_refused_with_a_line),
 		cmocka_unit_test(names_match_their_enums),

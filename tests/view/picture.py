@@ -19,12 +19,12 @@ def skip(reason):
 
 
 def write_scene(folder, scenes):
-    """The installed procedural scene with a small volume, which is made in a blink."""
-    with open(os.path.join(scenes, "shells.scene"), encoding="utf-8") as source:
+    """The procedural scene of studies with a small volume, which is made in a blink."""
+    with open(os.path.join(scenes, "study", "shells.scene"), encoding="utf-8") as source:
         text = source.read()
-    assert "dims = 192 192 192" in text and "file = shells.tf" in text
+    assert "dims = 192 192 192" in text and "file = ../shells.tf" in text
     text = text.replace("dims = 192 192 192", "dims = 64 64 64")
-    text = text.replace("file = shells.tf", "file = " + os.path.join(scenes, "shells.tf"))
+    text = text.replace("file = ../shells.tf", "file = " + os.path.join(scenes, "shells.tf"))
     path = os.path.join(folder, "small.scene")
     with open(path, "w", encoding="utf-8") as out:
         out.write(text)
