@@ -97,7 +97,7 @@ const struct gz_option gz_sim_options[] = {
 	{ "sim.targets", GZ_OPTION_STRING, AT(targets), .max = GZ_PATH_SIZE, .preset = "",
 	  .help = "file with lines \"x y [weight]\": the places that attract the gaze" },
 	{ "sim.picture", GZ_OPTION_STRING, AT(picture), .max = GZ_PATH_SIZE, .preset = "",
-	  .help = "PNG file whose salient points attract the gaze" },
+	  .help = "PNG file whose salient points attract the gaze; read again if it changes" },
 	{ "sim.fixation_ms", GZ_OPTION_DOUBLE, VIEWER(fixation_ms), 120, 600, .preset = "250",
 	  .help = "mean duration of a fixation, ms" },
 	{ "sim.saccade_deg", GZ_OPTION_DOUBLE, VIEWER(saccade_deg), 1, 30, .preset = "7",
@@ -401,6 +401,12 @@ void gz_sim_tracker_next(struct gz_sim_tracker *tracker, struct gz_sim_sample *o
 void gz_sim_tracker_follow(struct gz_sim_tracker *tracker, const struct gz_point *point)
 {
 	gz_viewer_follow(&tracker->viewer, point);
+}
+
+void gz_sim_tracker_attract(struct gz_sim_tracker *tracker, const struct gz_targets *targets)
+{
+	tracker->targets = *targets; /* which the viewer borrows */
+	memset(tracker->viewer.inhibition, 0, sizeof tracker->viewer.inhibition);
 }
 
 struct gz_display gz_sim_tracker_display(const struct gz_sim_tracker *tracker)

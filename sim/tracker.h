@@ -93,6 +93,11 @@ void gz_sim_tracker_next(struct gz_sim_tracker *tracker, struct gz_sim_sample *o
  */
 void gz_sim_tracker_follow(struct gz_sim_tracker *tracker, const struct gz_point *point);
 
+/** Give the viewer other places that attract it, from its next fixation on. From then on the
+ * samples do not depend on the settings alone. @param targets  copied. Threads: one at a time per
+ * tracker. */
+void gz_sim_tracker_attract(struct gz_sim_tracker *tracker, const struct gz_targets *targets);
+
 /** The display that the viewer looks at. */
 struct gz_display gz_sim_tracker_display(const struct gz_sim_tracker *tracker);
 

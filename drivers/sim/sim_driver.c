@@ -5,6 +5,7 @@
  */
 #include <stdlib.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 
 #include "drivers/device/clock_model.h"
 #include "drivers/device/device.h"
@@ -21,6 +22,9 @@ static const int64_t BACKLOG_NS = 2 * GZ_NS_PER_S;
  * the preset of pointer.timeout_ms. */
 static const int64_t FOLLOW_PATIENCE_NS = GZ_NS_PER_S;
 
+/* Interval of asking whether the picture has changed. Chosen: no longer than two fixations. */
+static const int64_t PICTURE_INTERVAL_NS = GZ_NS_PER_S / 2;
+
 struct sim_device {
 	struct gz_device base;
 	struct gz_sim_params params;
@@ -32,6 +36,8 @@ struct sim_device {
 	uint64_t lost;
 	struct gz_pointer_feed *feed; /* target reports, borrowed; may be NULL */
 	int64_t told_ns;              /* host time of the newest target; 0: none, or forgotten */
+	int64_t picture_asked_ns;     /* host time; 0: not yet */
+	struct timespec picture_time; /* when the picture was changed, as last seen */
 	uint32_t skipped; /* lost since the last delivered sample, beyond next's own losses */
 };
 
@@ -109,12 +115,39 @@ static void follow_shown_targets(struct sim_device *sim)
 	sim->told_ns = 0;
 }
 
+/* When the picture was changed last; zeros: it cannot be told. */
+static struct timespec picture_time(const struct sim_device *sim)
+{
+	struct stat status;
+	if (!sim->params.picture[0] || stat(sim->params.picture, &status) != 0)
+		return (struct timespec) { 0 };
+	return status.st_mtim;
+}
+
+/* The program that shows a picture may replace the file. Reading it takes some milliseconds, by
+ * which samples are late. */
+static void follow_picture(struct sim_device *sim, int64_t now_ns)
+{
+	if (!sim->params.picture[0] || now_ns - sim->picture_asked_ns < PICTURE_INTERVAL_NS)
+		return;
+	sim->picture_asked_ns = now_ns;
+	const struct timespec time = picture_time(sim);
+	if ((time.tv_sec == 0 && time.tv_nsec == 0) ||
+	    (time.tv_sec == sim->picture_time.tv_sec && time.tv_nsec == sim->picture_time.tv_nsec))
+		return;
+	sim->picture_time = time;
+	struct gz_targets targets;
+	if (gz_targets_from_png(sim->params.picture, sim->base.log, &targets) == GZ_OK)
+		gz_sim_tracker_attract(sim->tracker, &targets);
+}
+
 static enum gz_result sim_read(struct gz_device *device, int timeout_ms,
 			       struct gz_sample *out_sample)
 {
 	struct sim_device *sim = sim_device_of(device);
 	if (sim->params.realtime) {
 		int64_t now_ns = gz_clock_now_ns();
+		follow_picture(sim, now_ns);
 		skip_sim_backlog(sim, now_ns);
 		int64_t deadline_ns = now_ns + timeout_ms * GZ_NS_PER_MS;
 		int64_t due_ns = sim->start_ns + sim->next.arrival_ns;
@@ -179,6 +212,7 @@ static enum gz_result sim_create(const void *settings, const struct gz_driver_ho
 	sim->base = (struct gz_device) { .ops = &sim_ops, .log = log };
 	sim->feed = host->pointer;
 	sim->params = *(const struct gz_sim_params *)settings;
+	sim->picture_time = picture_time(sim);
 	enum gz_result result = gz_sim_tracker_create(&sim->params, 0, log, &sim->tracker);
 	if (result != GZ_OK) {
 		sim_destroy(&sim->base);

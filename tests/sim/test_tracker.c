@@ -377,6 +377,29 @@ static void wrong_settings_are_refused(void **state)
 	gz_sim_tracker_destroy(NULL);
 }
 
+static void viewer_turns_to_other_targets(void **state)
+{
+	(void)state;
+	static const struct gz_targets sides[2] = {
+		{ .count = 1, .target = { { .point = { 0.25F, 0.5F }, .weight = 1 } } },
+		{ .count = 1, .target = { { .point = { 0.75F, 0.5F }, .weight = 1 } } },
+	};
+	struct gz_sim_params params = clean_params(100);
+	params.viewer.pursuits_per_min = 0;
+	struct gz_sim_tracker *tracker = tracker_of(&params);
+	for (int side = 0; side < 2; side++) {
+		int there = 0;
+		gz_sim_tracker_attract(tracker, &sides[side]);
+		for (int i = 0; i < 1000; i++) {
+			struct gz_sim_sample sample;
+			gz_sim_tracker_next(tracker, &sample);
+			there += fabsf(sample.truth.point.x - sides[side].target[0].point.x) < 0.1F;
+		}
+		assert_in_range(there, 850, 1000);
+	}
+	gz_sim_tracker_destroy(&tracker);
+}
+
 TEST_SUITE(tracker)
 {
 	static const struct CMUnitTest tests[] = {
@@ -395,6 +418,7 @@ TEST_SUITE(tracker)
 		cmocka_unit_test(eyes_look_from_their_place_to_the_point),
 		cmocka_unit_test(device_clock_has_its_offset_and_skew),
 		cmocka_unit_test(arrival_follows_exposure_by_the_latency),
+		cmocka_unit_test(viewer_turns_to_other_targets),
 		cmocka_unit_test(wrong_settings_are_refused),
 	};
 	return cmocka_run_group_tests_name("sim.tracker", tests, NULL, NULL);

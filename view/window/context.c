@@ -1,4 +1,5 @@
 /* The window and its OpenGL context: opened, filled, read, and replaced after a loss. */
+#include <math.h>
 #include <string.h>
 
 #include <GL/glew.h>
@@ -7,6 +8,7 @@
 
 #include "base/clock.h"
 #include "view/panels/widgets.h"
+#include "view/window/displays.h"
 #include "view/window/glfw.h"
 #include "view/window/window_state.h"
 
@@ -155,6 +157,26 @@ enum gz_result gz_window_read_back(int width, int height, struct gz_image *image
 	glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image->pixels);
 	put_upright(image);
 	return GZ_OK;
+}
+
+enum gz_result gz_window_shrink_shown(struct gz_window *window, int width, int height,
+				      struct gz_image *image)
+{
+	struct gz_image shown = { 0 };
+	int size_px[2];
+	gz_window_framebuffer(window, &size_px[0], &size_px[1]);
+	if (size_px[0] < 1 || size_px[1] < 1)
+		return GZ_ERR_INVAL;
+	gz_quad_draw(&window->quad, size_px[0], size_px[1]);
+	enum gz_result r = gz_window_read_back(size_px[0], size_px[1], &shown);
+	const double scale = fmin((double)width / size_px[0], (double)height / size_px[1]);
+	if (r == GZ_OK)
+		r = gz_image_resize(image, (int)fmax(1, size_px[0] * scale),
+				    (int)fmax(1, size_px[1] * scale));
+	if (r == GZ_OK)
+		gz_image_resample(&shown, image);
+	gz_image_free(&shown);
+	return r;
 }
 
 /* ---- loss of the context ---- */

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "view/window/glfw.h"
 #include "view/window/sections.h"
+#include "view/window/simulator.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"

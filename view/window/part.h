@@ -146,7 +146,9 @@ struct gz_window_part {
 	ROW(menu)          /* menus; first, as all others lie below its bar */ \
 	ROW(loading)       /* loads and holds scenes */ \
 	ROW(keys)          /* lists keys */ \
-	ROW(start)         /* the window without a scene; simulated viewer */ \
+	ROW(start)         /* the window without a scene */ \
+	ROW(simulator)     /* starts a simulated viewer, and shows it the picture */ \
+	ROW(effect)        /* shows what foveation does; before history: it begins with it */ \
 	ROW(history)       /* undoes and redoes; before all that change settings */ \
 	ROW(displays)      /* monitors, and which is the tracker's */ \
 	ROW(gaze)          /* sources of the gaze */ \

@@ -10,21 +10,24 @@
 #include "base/clock.h"
 #include "render/picture/image.h"
 #include "view/draw/icon.h"
-#include "view/files/folder.h"
 #include "view/files/programs.h"
 #include "view/files/recent.h"
+#include "view/files/shipped_scenes.h"
 #include "view/panels/widgets.h"
-#include "view/window/displays.h"
+#include "view/window/effect.h"
 #include "view/window/gaze.h"
 #include "view/window/loading.h"
+#include "view/window/simulator.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
 
-/* Unscaled (chosen: a picture, and a name beside it). */
-#define WIDTH      560.0f
-#define ROW_HEIGHT 40.0f
-#define ICON_WIDTH 64.0f
+/* Unscaled (chosen: a picture, and a name beside it; scenes have their names below). */
+#define WIDTH        600.0f
+#define ROW_HEIGHT   40.0f
+#define ICON_WIDTH   64.0f
+#define SCENE_WIDTH  128.0f
+#define SCENE_HEIGHT 80.0f
 /* Of the small pictures, px (chosen: sharp at scale 2). */
 #define PICTURE_WIDTH  128
 #define PICTURE_HEIGHT 80
@@ -32,60 +35,63 @@
 /* Interval of asking whether the programs still run, s. */
 #define CHILD_PATIENCE_S 1.0
 
-/* Most recent files that are shown, and lines of the list of scenes (chosen: all fits in a window
- * of 720 px). */
-enum { RECENT_SHOWN = 5, SCENE_LINES = 7 };
+/* Most recent files that are shown, and scenes in a row (chosen: all fits in a window of 720 px).
+ */
+enum { RECENT_SHOWN = 3, SCENES_IN_ROW = 4 };
 
 struct gz_window_start {
 	unsigned icons[RECENT_SHOWN]; /* of the recent files; 0: there is no picture */
 	bool icons_made;
-	struct gz_folder scenes; /* that are shipped */
-	bool scenes_read;
-	pid_t simulator; /* gazed, as started here; 0: none */
-	pid_t study;     /* gazeview with the example study; 0: none */
+	struct gz_shipped_scenes scenes;
+	unsigned scene_icons[GZ_SHIPPED_SCENES_MAX]; /* as above */
+	bool scenes_read, scene_icons_made;
+	pid_t study; /* gazeview with the example study; 0: none */
 };
 
 /* ---- small pictures ---- */
 
-static void free_icons(struct gz_window *window)
+/* @return an icon of a PNG file; 0: there is none */
+static unsigned make_icon(const char *path)
 {
-	for (size_t i = 0; i < RECENT_SHOWN; i++)
-		gz_icon_free(&window->start->icons[i]);
-	window->start->icons_made = false;
+	struct gz_image image = { 0 };
+	unsigned icon = 0;
+	if (access(path, R_OK) == 0 && gz_image_read_png(path, NULL, &image) == GZ_OK)
+		icon = gz_icon_make_colour(image.pixels, image.width, image.height);
+	gz_image_free(&image);
+	return icon;
 }
 
-static void make_icons(struct gz_window *window)
+static void free_recent_icons(struct gz_window_start *self)
+{
+	for (size_t i = 0; i < RECENT_SHOWN; i++)
+		gz_icon_free(&self->icons[i]);
+	self->icons_made = false;
+}
+
+static void free_icons(struct gz_window *window)
+{
+	struct gz_window_start *self = window->start;
+	free_recent_icons(self);
+	for (size_t i = 0; i < GZ_SHIPPED_SCENES_MAX; i++)
+		gz_icon_free(&self->scene_icons[i]);
+	self->scene_icons_made = false;
+}
+
+static void make_recent_icons(struct gz_window *window)
 {
 	const struct gz_recent *recent = gz_window_recent(window);
-	struct gz_image image = { 0 };
 	char path[GZ_PATH_SIZE];
 	window->start->icons_made = true;
 	for (size_t i = 0; i < recent->count && i < RECENT_SHOWN; i++)
-		if (gz_recent_picture(recent->paths[i], path) == GZ_OK && access(path, R_OK) == 0 &&
-		    gz_image_read_png(path, NULL, &image) == GZ_OK)
-			window->start->icons[i] =
-				gz_icon_make_colour(image.pixels, image.width, image.height);
-	gz_image_free(&image);
+		if (gz_recent_picture(recent->paths[i], path) == GZ_OK)
+			window->start->icons[i] = make_icon(path);
 }
 
-/* The picture on the screen without what lies over it, small. */
-static enum gz_result shrink_shown(struct gz_window *window, struct gz_image *small)
+static void make_scene_icons(struct gz_window_start *self)
 {
-	struct gz_image image = { 0 };
-	int width, height;
-	gz_window_framebuffer(window, &width, &height);
-	if (width < 1 || height < 1)
-		return GZ_ERR_INVAL;
-	gz_quad_draw(&window->quad, width, height);
-	enum gz_result r = gz_window_read_back(width, height, &image);
-	const double scale = fmin((double)PICTURE_WIDTH / width, (double)PICTURE_HEIGHT / height);
-	if (r == GZ_OK)
-		r = gz_image_resize(small, (int)fmax(1, width * scale),
-				    (int)fmax(1, height * scale));
-	if (r == GZ_OK)
-		gz_image_resample(&image, small);
-	gz_image_free(&image);
-	return r;
+	self->scene_icons_made = true;
+	for (size_t i = 0; i < self->scenes.count; i++)
+		self->scene_icons[i] = make_icon(self->scenes.items[i].picture);
 }
 
 /* Keep a picture of a recent file that is left. */
@@ -98,57 +104,18 @@ static void keep_small_picture(struct gz_window *window)
 	    recent->count == 0 || !gz_recent_is_first(recent, gz_window_scene_path(window)))
 		return;
 	if (gz_recent_picture(recent->paths[0], path) == GZ_OK &&
-	    shrink_shown(window, &small) == GZ_OK)
+	    gz_window_shrink_shown(window, PICTURE_WIDTH, PICTURE_HEIGHT, &small) == GZ_OK)
 		gz_recent_write_picture(&small, path, window->log);
 	gz_image_free(&small);
-	free_icons(window);
+	free_recent_icons(window->start);
 }
 
 /* ---- programs ---- */
 
-static void start_simulator(struct gz_window *window)
-{
-	char path[GZ_PATH_SIZE];
-	if (gz_program_path("gazed", path) != GZ_OK) {
-		gz_err(window->log, "no simulated viewer: gazed is not beside gazeview");
-		return;
-	}
-	char *const arguments[] = { path, (char *)"--driver=sim", (char *)"--tcp=off", NULL };
-	if (gz_program_start(arguments, &window->start->simulator) != GZ_OK) {
-		gz_err(window->log, "no simulated viewer: %s cannot be started", path);
-		return;
-	}
-	gz_info(window->log, "a simulated viewer looks around; it ends with this window");
-	gz_window_ask_for_gaze(window, "daemon");
-}
-
-bool gz_window_is_simulating(const struct gz_window *window)
-{
-	return window->start->simulator > 0;
-}
-
-static bool is_simulator_on(const struct gz_window *window, int number)
-{
-	(void)number;
-	return gz_window_is_simulating(window);
-}
-
-static void toggle_simulator(struct gz_window *window, int number)
-{
-	(void)number;
-	if (window->start->simulator > 0) {
-		gz_program_stop(&window->start->simulator);
-		gz_window_ask_for_gaze(window, "mouse");
-	} else {
-		start_simulator(window);
-	}
-	gz_window_wake_panels(window);
-}
-
-/* In a window of its own: this one goes on behind it. */
+/* In a window of its own, which asks who takes part: this one goes on behind it. */
 static void run_example_study(struct gz_window *window, int number)
 {
-	char program[GZ_PATH_SIZE], experiment[GZ_PATH_SIZE], session[32];
+	char program[GZ_PATH_SIZE], experiment[GZ_PATH_SIZE];
 	struct gz_window_start *self = window->start;
 	(void)number;
 	if (gz_program_runs(&self->study)) {
@@ -160,18 +127,13 @@ static void run_example_study(struct gz_window *window, int number)
 		gz_err(window->log, "the example study is not installed");
 		return;
 	}
-	snprintf(session, sizeof session, "%lld", (long long)(gz_clock_now_ns() / GZ_NS_PER_S));
 	char *const arguments[] = { program,
 				    (char *)"--experiment",
 				    experiment,
-				    (char *)"--participant",
-				    (char *)"example",
-				    (char *)"--session",
-				    session,
 				    (char *)"--answers",
 				    (char *)window->options->pictures,
 				    (char *)"--gaze",
-				    (char *)(self->simulator > 0 ? "daemon" : "mouse"),
+				    (char *)(gz_window_is_simulating(window) ? "daemon" : "mouse"),
 				    NULL };
 	if (gz_program_start(arguments, &self->study) != GZ_OK)
 		gz_err(window->log, "%s cannot be started", program);
@@ -180,16 +142,13 @@ static void run_example_study(struct gz_window *window, int number)
 static void turn_start(struct gz_window *window)
 {
 	struct gz_window_start *self = window->start;
-	if (self->simulator > 0 && !gz_program_runs(&self->simulator))
-		gz_warn(window->log, "the simulated viewer has ended; another gazed may be "
-				     "running");
 	(void)gz_program_runs(&self->study);
 }
 
 static double start_patience_s(const struct gz_window *window)
 {
 	const struct gz_window_start *self = window->start;
-	return self->simulator > 0 || self->study > 0 ? CHILD_PATIENCE_S : INFINITY;
+	return self->study > 0 ? CHILD_PATIENCE_S : INFINITY;
 }
 
 /* ---- the panel ---- */
@@ -198,6 +157,14 @@ static const char *last_name(const char *path)
 {
 	const char *slash = strrchr(path, '/');
 	return slash && slash[1] ? slash + 1 : path;
+}
+
+static void draw_small_picture(struct gz_place corner, struct gz_place end, unsigned icon)
+{
+	if (icon)
+		gz_draw_icon(GZ_LAYER_PANEL, corner, end, icon);
+	else
+		gz_draw_rectangle(GZ_LAYER_PANEL, corner, end, gz_paint_ground, 3);
 }
 
 static bool draw_recent_row(struct gz_window *window, size_t index)
@@ -212,10 +179,7 @@ static bool draw_recent_row(struct gz_window *window, size_t index)
 	gz_widget_tooltip(path);
 	const struct gz_place end = { row.corner.x + ICON_WIDTH * unit,
 				      row.corner.y + ROW_HEIGHT * unit };
-	if (icon)
-		gz_draw_icon(GZ_LAYER_PANEL, row.corner, end, icon);
-	else
-		gz_draw_rectangle(GZ_LAYER_PANEL, row.corner, end, gz_paint_ground, 3);
+	draw_small_picture(row.corner, end, icon);
 	gz_widgets_elide(last_name(path), 0.8F, false, name, sizeof name);
 	gz_widgets_elide(path, 0.8F, true, folder, sizeof folder);
 	const struct gz_paint faint = { 170, 175, 185, 255 };
@@ -236,53 +200,74 @@ static const char *draw_recent_rows(struct gz_window *window)
 	gz_widget_separator();
 	gz_widget_text(gz_paint_amber, "Recent");
 	if (!window->start->icons_made)
-		make_icons(window);
+		make_recent_icons(window);
 	for (size_t i = 0; i < recent->count && i < RECENT_SHOWN; i++)
 		if (draw_recent_row(window, i))
 			chosen = recent->paths[i];
 	return chosen;
 }
 
-static void read_shipped_scenes(struct gz_window *window)
+/* A small picture with its name below. @return whether it was chosen */
+static bool draw_shipped_scene(const struct gz_shipped_scene *scene, unsigned icon)
 {
-	const struct gz_folder_filter filter = { 0 };
-	char path[GZ_PATH_SIZE], message[128];
-	window->start->scenes_read = true;
-	if (gz_shipped_path("scenes", path) == GZ_OK)
-		(void)gz_folder_read(path, &filter, &window->start->scenes, message,
-				     sizeof message);
+	const float unit = gz_widgets_scale(), line = gz_widgets_line_height();
+	struct gz_tall_row row = { .height = SCENE_HEIGHT + 1.2F * line / unit };
+	char id[80];
+	snprintf(id, sizeof id, "##scene %s", scene->name);
+	const bool chosen = gz_widget_tall_row(id, &row);
+	gz_widget_tooltip(scene->path);
+	const struct gz_place end = { row.corner.x + SCENE_WIDTH * unit,
+				      row.corner.y + SCENE_HEIGHT * unit };
+	draw_small_picture(row.corner, end, icon);
+	const struct gz_place at = { row.corner.x, end.y };
+	gz_draw_text(GZ_LAYER_PANEL, at, 1, gz_paint_plain, scene->name);
+	return chosen;
 }
 
-/* @return whether one was chosen */
-static bool draw_shipped_scenes(struct gz_window *window, char out_path[GZ_PATH_SIZE])
+/* @return the scene that was chosen; NULL: none */
+static const char *draw_shipped_scenes(struct gz_window_start *self)
 {
-	const struct gz_folder *scenes = &window->start->scenes;
-	bool chosen = false;
-	if (!window->start->scenes_read)
-		read_shipped_scenes(window);
+	const struct gz_shipped_scenes *scenes = &self->scenes;
+	const char *chosen = NULL;
+	if (!self->scenes_read)
+		(void)gz_shipped_scenes_read(&self->scenes);
+	self->scenes_read = true;
 	if (scenes->count == 0)
-		return false;
+		return NULL;
+	if (!self->scene_icons_made)
+		make_scene_icons(self);
 	gz_widget_separator();
 	gz_widget_text(gz_paint_amber, "Scenes that come with it");
-	if (gz_widget_list_begin("##scenes", SCENE_LINES))
-		for (size_t i = 0; i < scenes->count; i++) {
-			const struct gz_folder_entry *entry = &scenes->entries[i];
-			if (entry->is_folder || entry->kind != GZ_FILE_SCENE)
-				continue;
-			if (gz_widget_row(entry->name, false, NULL))
-				chosen = gz_folder_path_of(scenes, entry->name, out_path) == GZ_OK;
-		}
-	gz_widget_list_end();
+	gz_widget_columns_begin("##scenes", SCENES_IN_ROW);
+	for (size_t i = 0; i < scenes->count; i++) {
+		if (i > 0)
+			gz_widget_columns_next();
+		if (draw_shipped_scene(&scenes->items[i], self->scene_icons[i]))
+			chosen = scenes->items[i].path;
+	}
+	gz_widget_columns_end();
 	return chosen;
+}
+
+/* Which scenes are not offered, and why. */
+static void draw_scenes_left_out(const struct gz_shipped_scenes *scenes)
+{
+	char text[96];
+	if (scenes->without_data == 0)
+		return;
+	snprintf(text, sizeof text,
+		 "%zu more show data that you fetch yourself: docs/fetched-scenes.md",
+		 scenes->without_data);
+	gz_widget_text(gz_paint_plain, text);
 }
 
 static void draw_start_buttons(struct gz_window *window)
 {
 	gz_widget_separator();
-	if (gz_widget_button(window->start->simulator > 0 ? "Stop the simulated viewer"
-							  : "Simulated viewer"))
-		toggle_simulator(window, 0);
-	gz_widget_tooltip("starts gazed --driver sim: its gaze wanders over the picture");
+	if (gz_widget_button(gz_window_is_simulating(window) ? "Stop the simulated viewer"
+							     : "Simulated viewer"))
+		gz_window_toggle_simulator(window);
+	gz_widget_tooltip("starts gazed --driver sim: its gaze wanders over what is shown");
 	gz_widgets_same_line(0);
 	if (gz_widget_button("Run the example study"))
 		run_example_study(window, 0);
@@ -292,45 +277,38 @@ static void draw_start_buttons(struct gz_window *window)
 static void draw_start(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	static const struct gz_panel_place place = { .at = GZ_PANEL_MIDDLE, .width = WIDTH };
-	char path[GZ_PATH_SIZE];
-	bool open = false, scene = false;
-	const char *recent = NULL;
+	bool open = false, effect = false;
+	const char *recent = NULL, *scene = NULL;
 	(void)gaze;
 	if (window->maker || gz_window_is_loading(window) || gz_widgets_have_dialog())
 		return;
 	if (gz_panel_begin("##start", &place, NULL)) {
+		effect = gz_widget_button("See what foveation does");
+		gz_widget_tooltip("a picture that is sharp only at the mouse, beside a sharp one");
+		gz_widgets_same_line(0);
 		open = gz_widget_button("Open...");
 		gz_widgets_same_line(0);
-		gz_widget_label(gz_paint_plain,
-				"or drop a volume or a scene here. H lists the keys.");
+		gz_widget_label(gz_paint_plain, "or drop a volume or a scene here");
 		recent = draw_recent_rows(window);
-		scene = draw_shipped_scenes(window, path);
+		scene = draw_shipped_scenes(window->start);
+		draw_scenes_left_out(&window->start->scenes);
 		draw_start_buttons(window);
 	}
 	gz_panel_end();
-	if (open)
+	if (effect)
+		gz_window_show_effect(window);
+	else if (open)
 		gz_window_ask_for_file(window);
-	else if (recent)
-		gz_window_open_file(window, recent);
-	else if (scene)
-		gz_window_open_file(window, path);
+	else if (recent || scene)
+		gz_window_open_file(window, recent ? recent : scene);
 }
 
 static void close_start(struct gz_window *window)
 {
-	gz_program_stop(&window->start->simulator);
 	gz_program_stop(&window->start->study);
-	gz_folder_free(&window->start->scenes);
 }
 
 static const struct gz_window_action start_actions[] = {
-	{ .help = "a simulated viewer looks around, by gazed",
-	  .group = "gaze",
-	  .name = "Simulated viewer",
-	  .menu = GZ_MENU_GAZE,
-	  .words = "sim gazed daemon demo synthetic",
-	  .is_on = is_simulator_on,
-	  .run = toggle_simulator },
 	{ .help = "run the example study",
 	  .name = "Run the example study",
 	  .menu = GZ_MENU_STUDY,

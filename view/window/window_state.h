@@ -53,6 +53,7 @@ struct gz_window {
 	struct gz_window_clip *clip;
 	struct gz_window_compare *compare;
 	struct gz_window_displays *displays;
+	struct gz_window_effect *effect;
 	struct gz_window_files *files;
 	struct gz_window_frame_times *frame_times;
 	struct gz_window_full_picture *full_picture;
@@ -76,6 +77,7 @@ struct gz_window {
 	struct gz_window_sections *sections;
 	struct gz_window_session *session;
 	struct gz_window_sources *sources;
+	struct gz_window_simulator *simulator;
 	struct gz_window_start *start;
 	struct gz_window_status *status;
 	struct gz_window_time *time;
@@ -190,6 +192,17 @@ enum gz_result gz_window_rebuild(struct gz_window *window);
  *  resized @return what gz_image_resize() returns */
 enum gz_result gz_window_read_back(int width, int height, struct gz_image *image);
 
+/**
+ * The picture on the screen without what lies over it, scaled to fit into @p width times @p height
+ * px. What lies over it must be drawn again before the next swap.
+ *
+ * @param[in,out] image    resized
+ * @retval GZ_ERR_INVAL    the window has no size
+ * @return otherwise what gz_image_resize() returns
+ */
+enum gz_result gz_window_shrink_shown(struct gz_window *window, int width, int height,
+				      struct gz_image *image);
+
 /** Go into full screen on the monitor that the window is on, or back. */
 void gz_window_toggle_fullscreen(struct gz_window *window);
 
@@ -256,11 +269,6 @@ void gz_window_save_scene(struct gz_window *window);
 
 /** Whether the name of the scene is being asked for. */
 bool gz_window_is_saving(const struct gz_window *window);
-
-/* ---- start.c ---- */
-
-/** Whether the window has started a simulated viewer, whose gaze is on the window. */
-bool gz_window_is_simulating(const struct gz_window *window);
 
 /* ---- keys.c ---- */
 

@@ -1,0 +1,172 @@
+"""The window without a scene, the simulated viewer and the example study, as a person with a mouse uses
+them.
+
+window_start.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
+"""
+
+import os
+import sys
+import time
+import unittest
+
+from picture import PATIENCE_S
+from window_case import SCENE, SIZE, WindowCase
+
+BUTTON = (36, 69, 109)  # ground of a button, about
+SAMPLES = 25
+# Camera of the small scene, moved to its right by this: the object is on the left, or on the right.
+ASIDE = 0.65
+
+
+def view_aside(right):
+    """Eye and point looked at, moved along the right side of the camera."""
+    away = [0.8 * right, 0.6 * right, 0]
+    eye = [a + b for a, b in zip((0.9, -1.2, 1.1), away)]
+    return tuple(" ".join("%g" % x for x in place) for place in (eye, away))
+
+
+class Start(WindowCase):
+    menu = "yes"
+
+    def first_button(self, picture):
+        """The middle of the button at the upper left, or None."""
+        for y in range(24, SIZE[1]):
+            for x in range(SIZE[0]):
+                if all(abs(a - b) < 12 for a, b in zip(picture.at(x, y), BUTTON)):
+                    return x + 30, y + 6
+        return None
+
+    def amber_line(self, picture):
+        """The lowest row of amber letters, or None."""
+        rows = [y for y in range(24, SIZE[1]) if 4 < sum(
+            r > 180 and 0.55 * r < g < 0.85 * r and b < 0.5 * r
+            for r, g, b in (picture.at(x, y) for x in range(SIZE[0] // 2)))]
+        return rows[-1] if rows else None
+
+    def click(self, x, y):
+        """A click that lasts until a frame has seen it."""
+        self.move(x, y)
+        self.until_idle()
+        for what in ("mousedown", "mouseup"):
+            self.tool(what, 1)
+            self.until_idle()
+
+    def find(self, words):
+        """Run what a search for words finds first."""
+        self.press("ctrl+p")
+        self.tool("type", "--delay", "30", words)
+        self.until_idle()
+        self.tool("key", "Return")
+
+    def end(self):
+        self.leave()
+        self.assertEqual(self.viewer.returncode, 0)
+        return self.messages()
+
+    def test_one_click_shows_what_foveation_does(self):
+        self.launch()
+        empty = self.rest()
+        self.click(*self.first_button(empty))
+        shown = self.until(self.shows_something, "a scene")
+        middle = SIZE[0] // 2
+        self.move(middle - 60, SIZE[1] // 2)
+        divided = self.until(lambda p: all(min(p.at(middle, y)) > 200 for y in range(60, 240, 20)),
+                             "a divider")
+        # The mouse is the gaze: its way to a corner changes the left, and not the right.
+        self.until_idle()
+        sharp = self.rest()
+        self.move(20, SIZE[1] - 90)
+        left, right = (60, 60, middle - 12, 240), (middle + 12, 60, SIZE[0] - 10, 240)
+        blurred = self.until(lambda p: p.part(*left) != sharp.part(*left), "another left half")
+        self.until_idle()
+        self.assertEqual(self.grab().part(*right), sharp.part(*right))
+        self.assertNotEqual(shown.part(*left), blurred.part(*left))
+        self.assertTrue(divided)
+        self.assertIn("move the mouse", self.end())
+
+    def test_shipped_scene_is_opened_by_its_picture(self):
+        self.launch()
+        empty = self.rest()
+        self.click(40, self.amber_line(empty) + 30)
+        self.until(self.shows_something, "a shipped scene")
+        self.assertNotIn("error", self.end())
+
+    def own_scene(self):
+        """The small scene, its object on the left; its first view has it on the right."""
+        path = os.path.join(os.path.dirname(SCENE), "aside.scene")
+        eye, place = view_aside(ASIDE)
+        other = view_aside(-ASIDE)
+        with open(SCENE, encoding="utf-8") as scene, open(path, "w", encoding="utf-8") as own:
+            own.write(scene.read().replace("eye = 0.9 -1.2 1.1", "eye = " + eye)
+                      .replace("look_at = 0 0 0", "look_at = " + place)
+                      .replace("fov_deg = 32", "fov_deg = 50"))
+            own.write("[views]\n1 = eye %s look_at %s up 0 0 1 fov_deg 50\n" % other)
+        return path
+
+    def gaze_places(self):
+        """Columns at which the cross is seen, over some seconds."""
+        places = []
+        deadline = time.monotonic() + PATIENCE_S
+        while len(places) < SAMPLES and time.monotonic() < deadline:
+            middle = self.red_middle(self.grab())
+            if middle:
+                places.append(middle[0])
+            time.sleep(0.2)
+        self.assertEqual(len(places), SAMPLES, "the cross is seldom seen")
+        return places
+
+    def test_simulated_viewer_looks_at_the_object_and_follows_it(self):
+        self.start("--cross", "--backend", "cpu", scene=self.own_scene())
+        self.find("simulated viewer")
+        picture = self.wait_for(self.told_picture, "a picture for the viewer")
+        time.sleep(1)  # until the daemon is there
+        places = self.gaze_places()
+        self.assertGreater(sum(x < SIZE[0] // 2 for x in places), 0.8 * SAMPLES, places)
+        before = os.stat(picture).st_mtime_ns
+        self.tool("key", "F1")
+        self.wait_for(lambda: os.stat(picture).st_mtime_ns != before, "another picture")
+        time.sleep(2)  # until it is read, and the viewer turns to it
+        places = self.gaze_places()
+        self.assertGreater(sum(x > SIZE[0] // 2 for x in places), 0.8 * SAMPLES, places)
+        said = self.end()
+        self.assertNotIn("has ended", said)
+        self.assertFalse(os.path.exists(picture), "its picture is left behind")
+
+    def children(self):
+        """Command lines of the programs that the window has started."""
+        lines = []
+        for task in os.listdir("/proc/%d/task" % self.viewer.pid):
+            with open("/proc/%d/task/%s/children" % (self.viewer.pid, task),
+                      encoding="ascii") as children:
+                for child in children.read().split():
+                    with open("/proc/%s/cmdline" % child, encoding="utf-8") as line:
+                        lines.append(line.read().split("\0")[:-1])
+        return lines
+
+    def told_picture(self):
+        """The picture that a started gazed was told to look at."""
+        for words in self.children():
+            for word in words:
+                if word.startswith("--sim.picture="):
+                    return word.split("=", 1)[1]
+        return None
+
+    def test_example_study_asks_who_takes_part(self):
+        self.launch()
+        self.rest()
+        own = self.window
+        self.find("run the example study")
+        self.found(than=own)
+        study = self.wait_for(lambda: [words for words in self.children() if "--experiment" in words],
+                              "a study")[0]
+        self.assertNotIn("--participant", study)
+        self.assertTrue(os.path.exists(study[study.index("--experiment") + 1]))
+        self.window = own
+        self.viewer.terminate()
+        self.viewer.wait(timeout=PATIENCE_S)
+        self.viewer.communicate()
+        self.viewer = None
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=1)
