@@ -86,7 +86,7 @@ static void show_effect(struct gz_window *window, int number)
 }
 
 static const struct gz_window_action effect_actions[] = {
-	{ .help = "coarse beside the mouse, next to full quality",
+	{ .help = "what foveation does, beside full quality",
 	  .name = "See what foveation does",
 	  .menu = GZ_MENU_HELP,
 	  .words = "effect demo demonstration fovea split compare mouse tour",
