@@ -143,7 +143,7 @@ enum gz_result gz_gl_layers_pick(struct gz_gl_layers *layers, const struct gz_gl
 {
 	glUseProgram(layers->pick);
 	run_over_pixels(layers, textures);
-	return gz_gl_points_read(&layers->picture, device,
+	return gz_gl_points_read(&layers->picture, device, 0,
 				 (size_t)layers->width * (size_t)layers->height, out_words);
 }
 
@@ -152,7 +152,7 @@ enum gz_result gz_gl_layers_deliver(struct gz_gl_layers *layers, const struct gz
 {
 	enum gz_result result = GZ_OK;
 	if (image)
-		result = gz_gl_points_read(&layers->picture, device,
+		result = gz_gl_points_read(&layers->picture, device, 0,
 					   (size_t)layers->width * (size_t)layers->height,
 					   gz_image_words(image));
 	else

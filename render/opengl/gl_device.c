@@ -375,18 +375,20 @@ void *gz_gl_buffer_map_new(struct gz_gl_buffer *buffer, size_t size)
 	return memory;
 }
 
-void gz_gl_buffer_bring(const struct gz_gl_device *device, const struct gz_gl_buffer *source,
-			size_t bytes, struct gz_gl_buffer *staging)
+size_t gz_gl_buffer_bring(const struct gz_gl_device *device, const struct gz_gl_buffer *source,
+			  size_t from, size_t bytes, struct gz_gl_buffer *staging)
 {
-	if (!device->software) {
-		gz_gl_buffer_reserve(staging, bytes, GL_STREAM_READ);
+	if (device->software) {
 		glBindBuffer(GL_COPY_READ_BUFFER, source->name);
-		glBindBuffer(GL_COPY_WRITE_BUFFER, staging->name);
-		glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0,
-				    (GLsizeiptr)bytes);
-		source = staging;
+		return from;
 	}
+	gz_gl_buffer_reserve(staging, bytes, GL_STREAM_READ);
 	glBindBuffer(GL_COPY_READ_BUFFER, source->name);
+	glBindBuffer(GL_COPY_WRITE_BUFFER, staging->name);
+	glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, (GLintptr)from, 0,
+			    (GLsizeiptr)bytes);
+	glBindBuffer(GL_COPY_READ_BUFFER, staging->name);
+	return 0;
 }
 
 void gz_gl_buffer_free(struct gz_gl_buffer *buffer)

@@ -138,11 +138,14 @@ void gz_gl_buffer_reserve(struct gz_gl_buffer *buffer, size_t size, unsigned usa
  *  it keep it. NULL if the device has no room; the buffer is empty then. */
 void *gz_gl_buffer_map_new(struct gz_gl_buffer *buffer, size_t size);
 
-/** Bind the first @p bytes of @p source to GL_COPY_READ_BUFFER in memory that the host reads
- *  quickly: a graphics device copies them to @p staging; a software device's buffer is in host
- *  memory already. */
-void gz_gl_buffer_bring(const struct gz_gl_device *device, const struct gz_gl_buffer *source,
-			size_t bytes, struct gz_gl_buffer *staging);
+/** Bind @p bytes of @p source to GL_COPY_READ_BUFFER in memory that the host reads quickly: a
+ *  graphics device copies them to @p staging; a software device's buffer is in host memory already.
+ *
+ * @param from  the first of these bytes
+ * @return where they are in the bound buffer
+ */
+size_t gz_gl_buffer_bring(const struct gz_gl_device *device, const struct gz_gl_buffer *source,
+			  size_t from, size_t bytes, struct gz_gl_buffer *staging);
 
 /** Delete and zero. Accepts a zeroed one. */
 void gz_gl_buffer_free(struct gz_gl_buffer *buffer);

@@ -237,7 +237,7 @@ static struct gz_plane reconstructed_by_gl(const struct gz_plan *plan, enum gz_p
 	};
 	assert_int_equal(gz_gl_reconstruct(&gl.programs, &job), GZ_OK);
 	assert_int_equal(
-		gz_gl_points_read(&gl.points, &gl.device, (size_t)WIDTH * HEIGHT, plane.words),
+		gz_gl_points_read(&gl.points, &gl.device, 0, (size_t)WIDTH * HEIGHT, plane.words),
 		GZ_OK);
 	gz_lattices_free(&lattices);
 	return plane;

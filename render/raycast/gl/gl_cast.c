@@ -170,8 +170,8 @@ uint64_t gz_gl_cast_samples(struct gz_gl_cast *cast, const struct gz_gl_device *
 {
 	uint32_t counts[GZ_GL_COUNT_SLOTS] = { 0 };
 	uint64_t sum = 0;
-	gz_gl_buffer_bring(device, &cast->counts, COUNTS_SIZE, &cast->staging);
-	glGetBufferSubData(GL_COPY_READ_BUFFER, 0, sizeof counts, counts);
+	const size_t at = gz_gl_buffer_bring(device, &cast->counts, 0, COUNTS_SIZE, &cast->staging);
+	glGetBufferSubData(GL_COPY_READ_BUFFER, (GLintptr)at, sizeof counts, counts);
 	for (int i = 0; i < GZ_GL_COUNT_SLOTS; i++)
 		sum += counts[i];
 	return sum;

@@ -228,7 +228,7 @@ static enum gz_result deliver_picture(struct gl_raycaster *gl, const struct gz_p
 {
 	enum gz_result result = GZ_OK;
 	if (image)
-		result = gz_gl_points_read(&gl->colours, &gl->device,
+		result = gz_gl_points_read(&gl->colours, &gl->device, 0,
 					   (size_t)plan->width * (size_t)plan->height,
 					   gz_image_words(image));
 	else

@@ -67,12 +67,13 @@ void gz_gl_points_bind(const struct gz_gl_points *points)
 }
 
 enum gz_result gz_gl_points_read(struct gz_gl_points *points, const struct gz_gl_device *device,
-				 size_t count, uint32_t *out_words)
+				 size_t first, size_t count, uint32_t *out_words)
 {
 	const size_t bytes = count * sizeof *out_words;
-	gz_gl_buffer_bring(device, &points->points, bytes, &points->staging);
-	const void *words =
-		glMapBufferRange(GL_COPY_READ_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
+	const size_t at = gz_gl_buffer_bring(device, &points->points, first * sizeof *out_words,
+					     bytes, &points->staging);
+	const void *words = glMapBufferRange(GL_COPY_READ_BUFFER, (GLintptr)at, (GLsizeiptr)bytes,
+					     GL_MAP_READ_BIT);
 	if (!words) {
 		const enum gz_result result = gz_gl_device_errors(device);
 		return result == GZ_OK ? GZ_ERR_NO_MEM : result;

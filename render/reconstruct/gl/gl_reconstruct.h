@@ -52,10 +52,10 @@ enum gz_result gz_gl_points_prepare(struct gz_gl_points *points, const struct gz
 /** Bind the points for shaders. */
 void gz_gl_points_bind(const struct gz_gl_points *points);
 
-/** Copy the picture, @p count words, into host memory. GZ_ERR_NO_MEM, GZ_ERR_NO_DEVICE: not logged.
- */
+/** Copy @p count points from number @p first on into host memory; the picture's are the first.
+ *  GZ_ERR_NO_MEM, GZ_ERR_NO_DEVICE: not logged. */
 enum gz_result gz_gl_points_read(struct gz_gl_points *points, const struct gz_gl_device *device,
-				 size_t count, uint32_t *out_words);
+				 size_t first, size_t count, uint32_t *out_words);
 
 /** Bring the picture into points->picture, on the device. Colours only. */
 void gz_gl_points_to_texture(struct gz_gl_points *points, int width, int height);
