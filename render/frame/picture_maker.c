@@ -221,6 +221,7 @@ static struct gz_shot shot_of(const struct making *making)
 		.camera = making->request->camera,
 		.settings = making->request->settings,
 		.plan = making->plan,
+		.refined = making->plan,
 	};
 }
 
@@ -246,6 +247,8 @@ static enum gz_result plan_request_of(const struct making *making,
 	const struct gz_shot shot = shot_of(making);
 	if (drawer->ops->bound_plan)
 		drawer->ops->bound_plan(drawer, &shot, &plan);
+	/* Rays of several techniques meet on one plan. */
+	plan.refines = plan.refines && making->maker->drawers.count == 1;
 	*out_request = plan;
 	return GZ_OK;
 }

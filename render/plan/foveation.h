@@ -69,20 +69,23 @@ struct gz_spacing_table {
 
 /** All settings of the methods; the option keys are "foveation.<name>". */
 struct gz_foveation {
-	int method;               /**< index into gz_methods (method.h) */
-	int step_rule;            /**< enum gz_step_rule */
-	int step_phase;           /**< enum gz_step_phase */
-	int filter;               /**< enum gz_filter; pyramids only, regions are bilinear */
-	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
-	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
-	double mdc_square_px;     /**< edge of the fine square, px of the picture */
-	int mdc_spacing;          /**< outside the square */
-	double mdc3_square_px;    /**< edge of the square around which mdc3's third region lies */
-	int mdc3_spacing;         /**< in the third region */
-	double ddc_inner_px[2];   /**< semi-axes of the inner ellipse, px of the picture */
-	double ddc_middle_px[2];  /**< semi-axes of the middle ellipse */
-	int ddc_spacing[3];       /**< inner, middle, outer */
-	double blend_px;          /**< band at the borders of regions; 0 = a hard border */
+	int method;                /**< index into gz_methods (method.h) */
+	int step_rule;             /**< enum gz_step_rule */
+	int step_phase;            /**< enum gz_step_phase */
+	int filter;                /**< enum gz_filter; pyramids only, regions are bilinear */
+	double acuity_slope;       /**< m: degrees per cycle and degree of eccentricity */
+	double acuity_foveal_deg;  /**< omega0: degrees per cycle at the gaze */
+	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */
+	double contrast_first;     /**< spacing of the first rays, times what the eye resolves */
+	int contrast_rounds;       /**< most rounds of rays */
+	double mdc_square_px;      /**< edge of the fine square, px of the picture */
+	int mdc_spacing;           /**< outside the square */
+	double mdc3_square_px;     /**< edge of the square around which mdc3's third region lies */
+	int mdc3_spacing;          /**< in the third region */
+	double ddc_inner_px[2];    /**< semi-axes of the inner ellipse, px of the picture */
+	double ddc_middle_px[2];   /**< semi-axes of the middle ellipse */
+	int ddc_spacing[3];        /**< inner, middle, outer */
+	double blend_px;           /**< band at the borders of regions; 0 = a hard border */
 	int uniform_spacing;
 	double step_floor; /**< least sampling rate as a share of the full one, (0, 1] */
 	char table_file[GZ_PATH_SIZE]; /**< path of the user's table; empty: none */

@@ -9,7 +9,8 @@ const char *const gz_method_names[] = {
 	[GZ_METHOD_STANDARD] = "standard", [GZ_METHOD_MDC] = "mdc",
 	[GZ_METHOD_DDC] = "ddc",           [GZ_METHOD_ACUITY] = "acuity",
 	[GZ_METHOD_MDC3] = "mdc3",         [GZ_METHOD_UNIFORM] = "uniform",
-	[GZ_METHOD_TABLE] = "table",       [GZ_METHOD_COUNT] = NULL,
+	[GZ_METHOD_TABLE] = "table",       [GZ_METHOD_CONTRAST] = "contrast",
+	[GZ_METHOD_COUNT] = NULL,
 };
 
 /* A layer that shows within a shape around the gaze. */
@@ -136,6 +137,15 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.is_pyramid = true,
 		.own_steps = GZ_STEPS_TABLE,
 		.set_curves = gz_plan_set_table_curves,
+	},
+	[GZ_METHOD_CONTRAST] = {
+		.help = "acuity's rays only where neighbouring rays differ visibly",
+		.follows_gaze = true,
+		.can_be_coarser = true,
+		.refines = true,
+		.is_pyramid = true,
+		.own_steps = GZ_STEPS_PLACE,
+		.set_curves = gz_plan_set_acuity_curve,
 	},
 };
 

@@ -23,6 +23,7 @@ enum gz_method_index {
 	GZ_METHOD_MDC3,
 	GZ_METHOD_UNIFORM,
 	GZ_METHOD_TABLE,
+	GZ_METHOD_CONTRAST,
 	GZ_METHOD_COUNT,
 };
 
@@ -30,7 +31,8 @@ enum gz_method_index {
 enum gz_plan_steps {
 	GZ_STEPS_ONE,      /**< 1 everywhere */
 	GZ_STEPS_DISTANCE, /**< by distance from the gaze (GZ_STEP_DISTANCE) */
-	GZ_STEPS_RUNG,     /**< from the spacing that the eye resolves */
+	GZ_STEPS_RUNG,     /**< from the rung of a tile, which is what the eye resolves */
+	GZ_STEPS_PLACE,    /**< from the spacing that the eye resolves at a tile's place */
 	GZ_STEPS_TABLE,    /**< from the user's table */
 };
 
@@ -42,6 +44,7 @@ struct gz_method {
 	bool can_be_coarser; /**< a time budget and a lost gaze can make it coarser */
 	bool needs_table;    /**< a table of spacings must be given */
 	bool has_borders;    /**< its regions meet at borders, which foveation.blend_px softens */
+	bool refines;        /**< its first tiles show where further ones go: gz_plan_refine() */
 	bool is_pyramid; /**< its lattices form a pyramid, which foveation.reconstruction fills */
 	enum gz_plan_steps own_steps; /**< what GZ_STEP_METHOD means */
 	/** Pyramids: set the context's spacing by eccentricity, and its step if own_steps is
@@ -56,7 +59,7 @@ struct gz_method {
 extern const struct gz_method gz_methods[];
 
 /** Their names, in the order of the rows: "standard", "mdc", "ddc", "acuity", "mdc3", "uniform",
- *  "table"; NULL-terminated. */
+ *  "table", "contrast"; NULL-terminated. */
 extern const char *const gz_method_names[];
 
 /** The row of a foveation's method. */

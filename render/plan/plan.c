@@ -26,6 +26,7 @@ static bool same_request(const struct gz_plan_request *a, const struct gz_plan_r
 {
 	return a->width == b->width && a->height == b->height && a->rays_per_px == b->rays_per_px &&
 	       a->scale == b->scale && a->widen == b->widen && a->steps_per_px == b->steps_per_px &&
+	       a->refines == b->refines &&
 	       ((same_place(a->gaze.x, b->gaze.x) && same_place(a->gaze.y, b->gaze.y)) ||
 		!gz_foveation_follows_gaze(b->foveation)) &&
 	       gz_display_same(a->display, b->display) &&
@@ -47,10 +48,26 @@ static bool is_made_for(const struct gz_plan *plan, const struct gz_plan_request
 	return plan->serial != 0 && plan->made_for.valid && same_request(&made, request);
 }
 
+static bool is_refined(const struct gz_plan *plan)
+{
+	return plan->tile_count != plan->first_round.tile_count;
+}
+
 bool gz_plan_same(const struct gz_plan *a, const struct gz_plan *b)
 {
 	const struct gz_plan_request request = made_for(b);
-	return b->made_for.valid && a->tile_count == b->tile_count && is_made_for(a, &request);
+	return b->made_for.valid && !is_refined(a) && !is_refined(b) && is_made_for(a, &request);
+}
+
+static void take_refinement_back(struct gz_plan *plan)
+{
+	if (!is_refined(plan))
+		return;
+	plan->serial++;
+	plan->tile_count = plan->first_round.tile_count;
+	plan->ray_count = plan->first_round.ray_count;
+	for (size_t i = 0; i < plan->tile_count; i++)
+		plan->tiles[i].replaced = false;
 }
 
 static void remember(struct gz_plan *plan, const struct gz_plan_request *request)
@@ -72,9 +89,14 @@ static enum gz_result make_tiles(const struct gz_plan_request *request, struct g
 	plan->tile_count = 0;
 	plan->layer_count = 0;
 	plan->ray_count = 0;
+	plan->refines = context.round == GZ_ROUND_FIRST;
 	gz_plan_make_steps(&context, plan);
-	return gz_method_of(request->foveation)->is_pyramid ? gz_plan_ladder(&context, plan)
-							    : gz_plan_regions(&context, plan);
+	const enum gz_result result = gz_method_of(request->foveation)->is_pyramid
+					      ? gz_plan_ladder(&context, plan)
+					      : gz_plan_regions(&context, plan);
+	plan->first_round.tile_count = plan->tile_count;
+	plan->first_round.ray_count = plan->ray_count;
+	return result;
 }
 
 /* Done even if the tiles stay: bricks are fetched by the focus, and the view may have been shifted
@@ -92,14 +114,33 @@ enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_p
 	if (!request_valid(request))
 		return GZ_ERR_INVAL;
 	aim_plan(request, plan);
-	if (is_made_for(plan, request))
+	if (is_made_for(plan, request)) {
+		take_refinement_back(plan);
 		return GZ_OK;
+	}
 	plan->made_for.valid = false;
 	plan->serial++;
 	const enum gz_result result = make_tiles(request, plan);
 	if (result == GZ_OK)
 		remember(plan, request);
 	return result;
+}
+
+enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from, const float *contrasts)
+{
+	const struct gz_plan_request request = made_for(plan);
+	const size_t before = plan->tile_count;
+	struct gz_plan_context context;
+	gz_plan_context_make(&request, &context);
+	context.round = GZ_ROUND_FURTHER;
+	const enum gz_result result = gz_plan_ladder_refine(&context, plan, from, contrasts);
+	plan->serial += plan->tile_count != before;
+	return result;
+}
+
+int gz_plan_rounds(const struct gz_plan *plan)
+{
+	return plan->refines ? plan->made_for.foveation.contrast_rounds : 1;
 }
 
 struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation,

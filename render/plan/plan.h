@@ -43,6 +43,7 @@ struct gz_tile {
 	uint8_t layer;   /**< index into the plan's layers: gives the spacing */
 	uint8_t step;    /**< index into the plan's step multipliers */
 	uint8_t pattern; /**< enum gz_tile_pattern */
+	bool replaced;   /**< tiles of a later round lie over it (gz_plan_refine()) */
 };
 
 /** Columns and rows of a tile's rays, in spacings from its first: ray i = r * GZ_TILE_EDGE + c. */
@@ -134,6 +135,10 @@ struct gz_plan_request {
 	 * (gz_detail_steps_per_px()).
 	 */
 	double steps_per_px;
+	/** The technique refines the plan while it draws (gz_plan_refine()): methods with
+	 *  gz_method.refines emit the tiles of their first round. Otherwise they emit what they
+	 *  would need to show anything. Other methods ignore it. */
+	bool refines;
 };
 
 /** Where a plan's pixels lie in the picture that the camera frames: the plan's pixel (x, y) is the
@@ -160,6 +165,12 @@ struct gz_plan {
 	struct gz_tile *tiles; /**< in an order that keeps neighbours together */
 	uint64_t ray_count;    /**< lattice points that the tiles cast */
 	uint64_t serial;       /**< changes whenever the plan does; 0 before the first */
+	bool refines;          /**< the tiles are those of a first round: see gz_plan_refine() */
+	/** What gz_plan_update() made, before gz_plan_refine() appended to it. */
+	struct {
+		size_t tile_count;
+		uint64_t ray_count;
+	} first_round;
 	struct {
 		struct gz_plan_request request; /**< its pointers are not followed */
 		struct gz_foveation foveation;
@@ -187,12 +198,42 @@ struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation
  */
 enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_plan *plan);
 
-/** Whether two plans have the same tiles because they were made for equal requests. */
+/** Whether two plans have the same tiles because they were made for equal requests and are not
+ *  refined. */
 bool gz_plan_same(const struct gz_plan *a, const struct gz_plan *b);
 
 /** gz_plan_update() of gz_plan_request_make(). */
 enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct gz_display *display,
 			    struct gz_point gaze, int width, int height, struct gz_plan *plan);
+
+/**
+ * Append a further round of tiles to a plan that refines: each block of the last round in which the
+ * eye could see more than its rays show is cast again with all the rays that it needs. Its new
+ * tiles take the place of the old ones, which stay in the list, marked as replaced. A block becomes
+ * as fine as the contrast between its rays asks for (gz_plan_contrast_spacing_px()), but never
+ * finer than the acuity of the eye.
+ *
+ * @param from       first tile of the last round
+ * @param contrasts  of each tile from there on: the greatest contrast between neighbouring rays of
+ *                   the tile's block, [0, 1]. A quincunx tile whose y is not a multiple of its
+ *                   pair's edge is ignored: the upper one speaks for both
+ * @retval GZ_ERR_NO_MEM  out of memory for the tiles; those of the earlier rounds are intact
+ *
+ * Without a new tile the plan stays as it is. gz_plan_update() takes all further rounds back.
+ * Threads: one at a time per plan.
+ */
+enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from, const float *contrasts);
+
+/** Most rounds of a plan: 1 if it does not refine. */
+int gz_plan_rounds(const struct gz_plan *plan);
+
+/** Points along the edge of a tile's block and from there to the corner of the next: its node. A
+ *  node is a square tile or two quincunx tiles.
+ *
+ * @param[out] out_level  layer of the square lattice of the node
+ * @return whether the tile is its node's first
+ */
+bool gz_plan_node_of(const struct gz_tile *tile, int *out_level);
 
 /**
  * Which rays of a tile are cast: those whose point lies on its layer's lattice or, in a pyramid, on
@@ -241,6 +282,22 @@ int gz_plan_rectangles(const struct gz_plan *plan,
  */
 enum gz_result gz_plan_rays(const struct gz_plan *plan, const struct gz_camera *camera,
 			    struct gz_ray_frame *out_rays);
+
+/**
+ * Spacing of the rays that shows a contrast as finely as the eye can see it, px, not rounded;
+ * infinite if the eye cannot see it at all. The highest frequency f at which a contrast of c is
+ * seen at an eccentricity of e degrees follows from the threshold of Geisler and Perry, "A
+ * real-time foveated multiresolution system for low-bandwidth video communication" (1998):
+ * CT(f, e) = CT0 * exp(alpha * f * (e + e2) / e2), alpha .106, e2 2.3 degrees, CT0 =
+ * foveation.contrast_threshold. Two rays a cycle: the spacing is 1 / (2 f) degrees.
+ *
+ * @param contrast  Michelson's, [0, 1]
+ * @param gaze, pixel, width, height  as for gz_acuity_spacing_px()
+ */
+double gz_plan_contrast_spacing_px(const struct gz_foveation *foveation,
+				   const struct gz_display *display, double contrast,
+				   struct gz_point gaze, struct gz_point pixel, int width,
+				   int height);
 
 /** Free the tiles and zero the plan. */
 void gz_plan_free(struct gz_plan *plan);

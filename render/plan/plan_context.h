@@ -16,6 +16,13 @@ struct gz_plan_curve {
 	double slope[GZ_SPACING_TABLE_MAX]; /**< from knot i to i + 1 */
 };
 
+/** What tiles are made for. */
+enum gz_plan_round {
+	GZ_ROUND_ONLY,    /**< nothing is known of the picture, and nothing follows */
+	GZ_ROUND_FIRST,   /**< to find out where there is contrast */
+	GZ_ROUND_FURTHER, /**< the contrast of a block is known */
+};
+
 /** What a method needs to know about a frame. */
 struct gz_plan_context {
 	const struct gz_foveation *foveation;
@@ -36,6 +43,8 @@ struct gz_plan_context {
 	double scale_all, scale_outside; /**< factors of spacings: everywhere, outside the fovea */
 	double steps_per_px;             /**< of the request */
 	double widen;                    /**< of the request */
+	enum gz_plan_round round;
+	double contrast;   /**< GZ_ROUND_FURTHER: of the block that is looked at */
 	double uniform_px; /**< spacing of the uniform plan that widen leads to, once known */
 };
 
@@ -95,5 +104,9 @@ enum gz_result gz_plan_regions(const struct gz_plan_context *context, struct gz_
 
 /** Fill layers, reconstruction and tiles for a method with gz_method.set_curves. */
 enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *plan);
+
+/** See gz_plan_refine(). Changes the context's contrast. */
+enum gz_result gz_plan_ladder_refine(struct gz_plan_context *context, struct gz_plan *plan,
+				     size_t from, const float *contrasts);
 
 #endif

@@ -23,10 +23,15 @@ static double block_spacing(const struct gz_plan_context *context, int x, int y,
 	return gz_plan_spacing_at(context, near_x, near_y);
 }
 
+static int rung_of(int layer, int pattern)
+{
+	return layer == 0 ? 0 : 2 * layer - (pattern == GZ_TILE_SQUARE);
+}
+
 static void append_node(const struct gz_plan_context *context, struct gz_plan *plan, int x, int y,
 			int layer, enum gz_tile_pattern pattern)
 {
-	const int rung = layer == 0 ? 0 : 2 * layer - (pattern == GZ_TILE_SQUARE);
+	const int rung = rung_of(layer, pattern);
 	/* With the acuity rule each rung has its own step. */
 	const int step = context->steps == GZ_STEPS_RUNG
 				 ? rung
@@ -138,5 +143,47 @@ enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *p
 				return result;
 			subdivide(context, plan, x, y, LEVELS - 1);
 		}
+	return GZ_OK;
+}
+
+bool gz_plan_node_of(const struct gz_tile *tile, int *out_level)
+{
+	const bool pair = tile->pattern == GZ_TILE_QUINCUNX;
+	*out_level = tile->layer + pair;
+	return !pair || tile->y % (GZ_TILE_EDGE << *out_level) == 0;
+}
+
+/* A pair of quincunx tiles follow each other, unless the lower one lies outside the picture. */
+static void replace_node(struct gz_plan *plan, size_t first)
+{
+	struct gz_tile *tile = &plan->tiles[first], *next = tile + 1;
+	tile->replaced = true;
+	if (tile->pattern == GZ_TILE_QUINCUNX && first + 1 < plan->tile_count &&
+	    next->pattern == GZ_TILE_QUINCUNX && next->layer == tile->layer && next->x == tile->x &&
+	    next->y == tile->y + (GZ_TILE_EDGE << tile->layer))
+		next->replaced = true;
+}
+
+enum gz_result gz_plan_ladder_refine(struct gz_plan_context *context, struct gz_plan *plan,
+				     size_t from, const float *contrasts)
+{
+	const size_t to = plan->tile_count;
+	for (size_t i = from; i < to; i++) {
+		const struct gz_tile tile = plan->tiles[i];
+		int level;
+		if (tile.layer == 0 || !gz_plan_node_of(&tile, &level))
+			continue;
+		context->contrast = (double)contrasts[i - from];
+		const double spacing =
+			block_spacing(context, tile.x, tile.y, GZ_TILE_EDGE << level);
+		if (gz_ladder_rung(spacing) >= rung_of(tile.layer, tile.pattern))
+			continue;
+		/* room for a node that is split all the way down */
+		const enum gz_result result = gz_plan_reserve(plan, (size_t)1 << (2 * level));
+		if (result != GZ_OK)
+			return result;
+		replace_node(plan, i);
+		subdivide(context, plan, tile.x, tile.y, level);
+	}
 	return GZ_OK;
 }

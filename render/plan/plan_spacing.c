@@ -91,6 +91,10 @@ static void set_geometry(const struct gz_plan_request *request, struct gz_plan_c
 		.scale_outside = fmin(request->scale, GZ_PLAN_SCALE_OUTSIDE),
 		.widen = request->widen,
 		.steps_per_px = request->steps_per_px,
+		.round = request->refines && request->widen <= 0 &&
+					 gz_method_of(request->foveation)->refines
+				 ? GZ_ROUND_FIRST
+				 : GZ_ROUND_ONLY,
 	};
 	double mm[3];
 	gz_display_to_mm(display, gaze, mm);
@@ -155,6 +159,17 @@ static double eccentricity_at(const struct gz_plan_context *context, double x, d
 	return angle_of_chord(fmax(2 - 2 * cosine, 0));
 }
 
+/* Geisler and Perry's threshold, solved for the frequency: plan.h. rad. */
+static double contrast_spacing(const struct gz_plan_context *context, double eccentricity_rad)
+{
+	static const double alpha = 0.106, e2_deg = 2.3;
+	const double seen = log(context->contrast / context->foveation->contrast_threshold);
+	if (!(seen > 0))
+		return INFINITY;
+	const double away = (eccentricity_rad * deg_per_rad + e2_deg) / e2_deg;
+	return alpha * away / (2 * seen) / deg_per_rad;
+}
+
 /*
  * At the distance |p| from the eye, a length of s mm across the line of sight spans s / |p| rad.
  * Along the radius from the screen's centre a flat screen is seen at a slant and the same length
@@ -165,8 +180,12 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 	double length_mm;
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
 	double spacing = curve_at(&context->spacing, eccentricity);
+	if (context->round == GZ_ROUND_FURTHER)
+		spacing = fmax(spacing, contrast_spacing(context, eccentricity));
 	if (!context->spacing_in_px)
 		spacing *= length_mm * context->rays_per_mm;
+	if (context->round == GZ_ROUND_FIRST)
+		spacing = context->foveation->contrast_first * fmax(spacing, 1);
 	if (context->scale_all * context->scale_outside > 1)
 		spacing *= budget_scale_at(context, eccentricity);
 	return context->widen > 0 ? widened(context, spacing) : spacing;
@@ -189,6 +208,22 @@ double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct g
 	gz_plan_set_acuity_curve(&context);
 	return gz_plan_spacing_at(&context, pixel.x * (double)width - 0.5,
 				  pixel.y * (double)height - 0.5);
+}
+
+double gz_plan_contrast_spacing_px(const struct gz_foveation *foveation,
+				   const struct gz_display *display, double contrast,
+				   struct gz_point gaze, struct gz_point pixel, int width,
+				   int height)
+{
+	struct gz_plan_context context;
+	const struct gz_plan_request request =
+		gz_plan_request_make(foveation, display, gaze, width, height);
+	set_geometry(&request, &context);
+	context.contrast = contrast;
+	double length_mm;
+	const double eccentricity = eccentricity_at(&context, pixel.x * (double)width - 0.5,
+						    pixel.y * (double)height - 0.5, &length_mm);
+	return contrast_spacing(&context, eccentricity) * length_mm * context.rays_per_mm;
 }
 
 /* Step lengths. */
@@ -223,15 +258,22 @@ static const float acuity_steps[GZ_LADDER_RUNGS] = {
 	1, 2, 2.5F, 3, 3.5F, 4, 5, 6, 7, 8,
 };
 
+/* By the rung that the eye resolves at a place, whatever a tile's own is. Chosen: square roots of
+ * acuity's. Rays are cast where there is contrast, and there a missed surface shows most. */
+static const float place_steps[GZ_LADDER_RUNGS] = {
+	1, 1.4F, 1.6F, 1.7F, 1.9F, 2, 2.2F, 2.4F, 2.6F, 2.8F,
+};
+
 /* With longer steps a ray misses most of a volume. */
 static const double step_max = 16;
 
-static void make_acuity_ladder(const struct gz_plan_context *context, struct gz_plan *plan)
+static void make_acuity_ladder(const struct gz_plan_context *context, const float *steps,
+			       struct gz_plan *plan)
 {
 	plan->step_count = GZ_LADDER_RUNGS;
 	for (int i = 0; i < GZ_LADDER_RUNGS; i++) {
 		const double most = fmax(1, context->steps_per_px * gz_ladder_px[i]);
-		plan->steps[i] = (float)fmin((double)acuity_steps[i], most);
+		plan->steps[i] = (float)fmin((double)steps[i], most);
 	}
 }
 
@@ -252,7 +294,10 @@ void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *p
 		make_even_ladder(1 / context->foveation->step_floor, plan);
 		return;
 	case GZ_STEPS_RUNG:
-		make_acuity_ladder(context, plan);
+		make_acuity_ladder(context, acuity_steps, plan);
+		return;
+	case GZ_STEPS_PLACE:
+		make_acuity_ladder(context, place_steps, plan);
 		return;
 	case GZ_STEPS_TABLE:
 		make_table_ladder(context, plan);
@@ -283,6 +328,16 @@ static int distance_step(const struct gz_plan_context *context, const struct gz_
 	return rung_below(plan, 1 / share);
 }
 
+/* Index of the step for the spacing that the eye resolves at a place in every round. */
+static int place_step(const struct gz_plan_context *context, double x, double y)
+{
+	double length_mm;
+	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
+	const double spacing =
+		curve_at(&context->spacing, eccentricity) * length_mm * context->rays_per_mm;
+	return gz_ladder_rung(spacing * budget_scale_at(context, eccentricity));
+}
+
 int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan *plan, int x,
 		     int y, int edge)
 {
@@ -292,6 +347,8 @@ int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan
 	const double near_y = fmin(fmax(context->gaze_px[1], y), y + edge);
 	if (context->steps == GZ_STEPS_TABLE)
 		return rung_below(plan, table_step_at(context, near_x, near_y));
+	if (context->steps == GZ_STEPS_PLACE)
+		return place_step(context, near_x, near_y);
 	if (context->steps == GZ_STEPS_RUNG)
 		return gz_ladder_rung(gz_plan_spacing_at(context, near_x, near_y));
 	/* Not hypot(): it costs three times as much, and these squares cannot overflow. */

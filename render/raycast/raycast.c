@@ -186,6 +186,7 @@ static void raycast_bound_plan(const struct gz_drawer *drawer, const struct gz_s
 			       struct gz_plan_request *request)
 {
 	const struct raycast_drawer *self = (const struct raycast_drawer *)drawer;
+	request->refines = self->shown.volume && self->raycaster->ops->refines(self->raycaster);
 	if (self->shown.volume && request->height > 0) /* gz_plan_update() refuses the rest */
 		request->steps_per_px = gz_detail_steps_per_px(self->shown.volume, shot->camera,
 							       shot->settings, request->height);

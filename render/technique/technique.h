@@ -112,6 +112,8 @@ struct gz_shot {
 	const struct gz_camera *camera;
 	const void *settings; /**< the struct that the technique's options describe */
 	const struct gz_plan *plan;
+	/** The same plan, to be refined while it is drawn (gz_plan_refine()); NULL: it is final. */
+	struct gz_plan *refined;
 	/** What others have drawn into the picture; NULL: nothing. GZ_SHARES_AS_OPAQUE: put in what
 	 *  lies nearer. GZ_SHARES_AS_CLEAR: end the rays there, in front of these pixels. */
 	struct gz_ray_hits *hits;

@@ -187,18 +187,28 @@ struct gz_raycaster *small_scene_renderer(const struct small_scene *scene, int t
 	return renderer;
 }
 
+void small_scene_render_plan(struct gz_raycaster *renderer, const struct small_scene *scene,
+			     const struct gz_display *display, int width, int height,
+			     struct gz_plan *plan, struct gz_image *image,
+			     struct gz_frame_stats *out_stats)
+{
+	struct gz_plan_request request =
+		gz_plan_request_make(&scene->foveation, display, scene->gaze, width, height);
+	request.refines = renderer->ops->refines(renderer);
+	assert_int_equal(gz_plan_update(&request, plan), GZ_OK);
+	const struct gz_shot shot = {
+		.camera = &scene->camera, .settings = &scene->rays, .plan = plan, .refined = plan
+	};
+	assert_int_equal(gz_raycaster_draw(renderer, &shot, image, out_stats), GZ_OK);
+}
+
 void small_scene_render(struct gz_raycaster *renderer, const struct small_scene *scene, int width,
 			int height, struct gz_image *image, struct gz_frame_stats *out_stats)
 {
 	const struct gz_display display =
 		scene->display.px[0] ? scene->display : gz_display_default(width, height);
 	struct gz_plan plan = { 0 };
-	assert_int_equal(
-		gz_plan_make(&scene->foveation, &display, scene->gaze, width, height, &plan),
-		GZ_OK);
-	assert_int_equal(gz_raycaster_render(renderer, &scene->camera, &scene->rays, &plan, image,
-					     out_stats),
-			 GZ_OK);
+	small_scene_render_plan(renderer, scene, &display, width, height, &plan, image, out_stats);
 	gz_plan_free(&plan);
 }
 

@@ -47,6 +47,12 @@ bool small_scene_backend_runs(void);
 struct gz_raycaster *small_scene_renderer(const struct small_scene *scene, int threads,
 					  const char *simd);
 
+/** Render a frame by a plan that is kept from frame to frame; fails the test where that fails. */
+void small_scene_render_plan(struct gz_raycaster *renderer, const struct small_scene *scene,
+			     const struct gz_display *display, int width, int height,
+			     struct gz_plan *plan, struct gz_image *image,
+			     struct gz_frame_stats *out_stats);
+
 /** Render a frame; fails the test where that fails. */
 void small_scene_render(struct gz_raycaster *renderer, const struct small_scene *scene, int width,
 			int height, struct gz_image *image, struct gz_frame_stats *out_stats);

@@ -23,18 +23,20 @@ static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 	(void)state;
 	static const struct {
 		const char *key;
-		bool counts[GZ_METHOD_COUNT]; /* standard mdc ddc acuity mdc3 uniform table */
+		bool counts[GZ_METHOD_COUNT]; /* standard mdc ddc acuity mdc3 uniform table
+					       contrast */
 	} cases[] = {
-		{ "foveation.blend_px", { 0, 1, 1, 0, 1, 0, 0 } },
-		{ "foveation.step_phase", { 0, 0, 0, 1, 0, 0, 1 } },
-		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1 } },
-		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0 } },
+		{ "foveation.blend_px", { 0, 1, 1, 0, 1, 0, 0, 0 } },
+		{ "foveation.step_phase", { 0, 0, 0, 1, 0, 0, 1, 1 } },
+		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1, 1 } },
+		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0, 1 } },
+		{ "foveation.contrast_threshold", { 0, 0, 0, 0, 0, 0, 0, 1 } },
 		{ "foveation.table",
-		  { 1, 1, 1, 1, 1, 1, 1 } }, /* must be named before the method is used */
-		{ "foveation.method", { 1, 1, 1, 1, 1, 1, 1 } },
-		{ "attention.dead_band_deg", { 0, 1, 1, 1, 1, 0, 1 } },
-		{ "attention.budget_ms", { 0, 1, 1, 1, 1, 1, 1 } },
-		{ "render.ray_sampling_rate", { 1, 1, 1, 1, 1, 1, 1 } },
+		  { 1, 1, 1, 1, 1, 1, 1, 1 } }, /* must be named before the method is used */
+		{ "foveation.method", { 1, 1, 1, 1, 1, 1, 1, 1 } },
+		{ "attention.dead_band_deg", { 0, 1, 1, 1, 1, 0, 1, 1 } },
+		{ "attention.budget_ms", { 0, 1, 1, 1, 1, 1, 1, 1 } },
+		{ "render.ray_sampling_rate", { 1, 1, 1, 1, 1, 1, 1, 1 } },
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
 		for (int method = 0; method < GZ_METHOD_COUNT; method++) {

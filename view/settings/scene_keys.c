@@ -206,7 +206,13 @@ static bool with_a_pyramid(const struct gz_scene_settings *settings)
 static bool by_acuity(const struct gz_scene_settings *settings)
 {
 	return gz_method_of(&settings->foveation)->own_steps == GZ_STEPS_RUNG ||
+	       gz_method_of(&settings->foveation)->own_steps == GZ_STEPS_PLACE ||
 	       settings->foveation.step_rule == GZ_STEP_ACUITY;
+}
+
+static bool by_contrast(const struct gz_scene_settings *settings)
+{
+	return gz_method_of(&settings->foveation)->refines;
 }
 
 static bool with_longer_steps(const struct gz_scene_settings *settings)
@@ -297,6 +303,7 @@ static const struct {
 	{ "foveation.step_phase", with_longer_steps },
 	{ "foveation.reconstruction", with_a_pyramid },
 	{ "foveation.acuity_", by_acuity },
+	{ "foveation.contrast_", by_contrast },
 	{ "foveation.blend_px", with_borders },
 	{ "foveation.step_floor", by_distance },
 	{ "attention.budget_ms", with_a_scale },

@@ -8,6 +8,7 @@
 
 #include "base/clock.h"
 #include "base/workers.h"
+#include "render/contrast/contrast.h"
 #include "render/light/cube_pictures.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/fine_cells.h"
@@ -104,6 +105,7 @@ struct cpu_raycaster {
 	struct gz_cube_pictures pictures; /* of the surroundings, if they are wanted */
 	struct gz_volume_shade shade;     /* on others in the picture */
 	struct gz_lattices lattices;
+	struct gz_contrasts contrasts; /* of the tiles of a round */
 	struct sample_count counts[GZ_WORKERS_MAX];
 	char description[64];
 };
@@ -121,6 +123,7 @@ struct cast_job {
 	const struct gz_ray_params *rays;
 	double pixel_lengths; /* from gz_levels_pixel_lengths(); 0 if all take the full volume */
 	const struct gz_plan *plan;
+	size_t first;                   /* tile of this round */
 	const struct gz_ray_hits *hits; /* where rays end; NULL: nowhere */
 	struct gz_lattices *lattices;
 	gz_cast_tile_function *tile;
@@ -152,6 +155,7 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	gz_light_grid_free(&cpu->light_grid);
 	gz_cube_pictures_free(&cpu->pictures);
 	gz_lattices_free(&cpu->lattices);
+	gz_contrasts_free(&cpu->contrasts);
 	free(cpu->step_tables);
 	free(cpu->table);
 	gz_preintegration_free(&cpu->preintegration);
@@ -471,22 +475,44 @@ static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, in
 static void cast_part(void *user, size_t part, int worker)
 {
 	const struct cast_job *job = user;
-	const size_t from = part * TILES_A_PART;
+	const size_t from = job->first + part * TILES_A_PART;
 	const size_t to = from + TILES_A_PART < job->plan->tile_count ? from + TILES_A_PART
 								      : job->plan->tile_count;
 	for (size_t i = from; i < to; i++)
 		cast_tile(job, &job->plan->tiles[i], worker);
 }
 
-static uint64_t cast_tiles(struct cpu_raycaster *cpu, struct cast_job *job)
+static void cast_tiles(struct cpu_raycaster *cpu, struct cast_job *job)
 {
-	memset(cpu->counts, 0, sizeof cpu->counts);
 	gz_workers_run(cpu->workers, cast_part, job,
-		       (job->plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
+		       (job->plan->tile_count - job->first + TILES_A_PART - 1) / TILES_A_PART);
+}
+
+static uint64_t sum_samples(const struct cpu_raycaster *cpu)
+{
 	uint64_t samples = 0;
 	for (int i = 0; i < gz_workers_count(cpu->workers); i++)
 		samples += cpu->counts[i].samples;
 	return samples;
+}
+
+/* Refine the plan where the last round's rays differ, and cast the new tiles, round by round. */
+static enum gz_result cast_further_rounds(struct cpu_raycaster *cpu, struct gz_plan *plan,
+					  struct cast_job *job)
+{
+	for (int round = 1; round < gz_plan_rounds(plan); round++) {
+		const size_t tiles = plan->tile_count;
+		enum gz_result result = gz_contrasts_measure(plan, job->first, &cpu->lattices,
+							     cpu->workers, &cpu->contrasts);
+		if (result == GZ_OK)
+			result = gz_plan_refine(plan, job->first, cpu->contrasts.of);
+		if (result != GZ_OK || plan->tile_count == tiles)
+			return result;
+		job->first = tiles;
+		gz_lattices_unmark(&cpu->lattices, plan, tiles);
+		cast_tiles(cpu, job);
+	}
+	return GZ_OK;
 }
 
 static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_camera *camera,
@@ -615,14 +641,19 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 		return result;
 	surround_casts(cpu, rays, &job);
 	fill_tile_offsets(&job);
-	const uint64_t samples = cast_tiles(cpu, &job);
+	memset(cpu->counts, 0, sizeof cpu->counts);
+	cast_tiles(cpu, &job);
+	if (shot->refined && plan->refines)
+		result = cast_further_rounds(cpu, shot->refined, &job);
+	if (result != GZ_OK)
+		return result;
 	const int64_t cast_ns = gz_clock_now_ns();
 	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,
 		       gz_image_words(image));
 	if (out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
-			.samples = samples,
+			.samples = sum_samples(cpu),
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
 			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
@@ -652,6 +683,11 @@ static enum gz_result cpu_shade(struct gz_raycaster *raycaster, const struct gz_
 		       : result;
 }
 
+static bool cpu_refines(const struct gz_raycaster *raycaster)
+{
+	return !((const struct cpu_raycaster *)raycaster)->volume->bricks;
+}
+
 static const char *cpu_describe(const struct gz_raycaster *raycaster)
 {
 	return ((const struct cpu_raycaster *)raycaster)->description;
@@ -664,6 +700,7 @@ const struct gz_raycaster_ops gz_cpu_raycaster_ops = {
 	.set_transfer = cpu_set_transfer,
 	.draw = cpu_draw,
 	.shade = cpu_shade,
+	.refines = cpu_refines,
 	.describe = cpu_describe,
 	.destroy = cpu_destroy,
 };

@@ -7,6 +7,7 @@
 
 #include "render/opengl/gl_device.h"
 #include "render/raycast/gl/gl_cast.h"
+#include "render/raycast/gl/gl_rounds.h"
 #include "render/raycast/gl/gl_scene.h"
 #include "render/reconstruct/gl/gl_plan.h"
 #include "render/reconstruct/gl/gl_reconstruct.h"
@@ -21,6 +22,8 @@ struct gl_raycaster {
 	struct gz_gl_device device;
 	struct gz_gl_scene scene;
 	struct gz_gl_plan plan;
+	struct gz_gl_tile_levels levels; /* of the last frame's tiles */
+	struct gz_gl_rounds rounds;
 	struct gz_gl_points colours;
 	struct gz_gl_cast cast;
 	struct gz_gl_reconstruct reconstruct;
@@ -57,6 +60,7 @@ static void gl_destroy(struct gz_raycaster *raycaster)
 		/* A lost context took its objects with it. */
 		gz_gl_scene_forget(&gl->scene);
 	}
+	gz_gl_rounds_free(&gl->rounds);
 	gz_gl_device_destroy(&gl->device);
 	free(gl);
 }
@@ -148,17 +152,18 @@ static enum gz_result reserve_outputs(struct gl_raycaster *gl, const struct gz_p
 static enum gz_result prepare_frame(struct gl_raycaster *gl, const struct gz_gl_frame *frame)
 {
 	struct gz_gl_cast_block block = { 0 };
-	struct gz_gl_tile_levels levels;
 	const struct gz_log *log = gl->base.log;
-	enum gz_result result = gz_gl_scene_prepare(&gl->scene, &gl->device, frame, &levels, log);
+	enum gz_result result =
+		gz_gl_scene_prepare(&gl->scene, &gl->device, frame, &gl->levels, log);
 	if (result == GZ_OK)
-		result = gz_gl_plan_prepare(&gl->plan, &gl->device, frame->plan, &levels, log);
+		result = gz_gl_plan_prepare(&gl->plan, &gl->device, frame->plan, &gl->levels, log);
 	if (result == GZ_OK)
 		result = reserve_outputs(gl, frame->plan);
 	if (result != GZ_OK)
 		return result;
 	for (int i = 0; i < gl->scene.level_count; i++) {
-		if (i > 0 && gl->plan.level_ranges[i].count == 0)
+		/* Tiles of further rounds may take any level. */
+		if (i > 0 && gl->plan.level_ranges[i].count == 0 && !frame->plan->refines)
 			continue;
 		gz_gl_scene_fill(&gl->scene, i, frame, &block);
 		gz_gl_cast_set_block(&gl->cast, i, &block);
@@ -197,6 +202,61 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 	return result;
 }
 
+/* Let the device have these tiles of a plan in place of others. */
+static enum gz_result take_tiles(struct gl_raycaster *gl, const struct gz_plan *plan)
+{
+	const enum gz_result result =
+		gz_gl_plan_prepare(&gl->plan, &gl->device, plan, &gl->levels, gl->base.log);
+	if (result == GZ_OK)
+		gz_gl_plan_bind(&gl->plan);
+	return result;
+}
+
+/* Refine the plan where the last round's rays differ, and cast the new tiles, round by round. */
+static enum gz_result cast_further_rounds(struct gl_raycaster *gl, const struct gz_shot *shot)
+{
+	struct gz_plan *plan = shot->refined;
+	struct gz_plan part;
+	struct gz_gl_rounds_job job = {
+		.device = &gl->device,
+		.gl_plan = &gl->plan,
+		.points = &gl->colours,
+		.workers = gz_gl_scene_workers(&gl->scene),
+		.plan = plan,
+	};
+	if (!job.workers)
+		return GZ_ERR_NO_MEM;
+	for (int round = 1; round < gz_plan_rounds(plan); round++) {
+		const size_t tiles = plan->tile_count;
+		enum gz_result result = gz_gl_rounds_refine(&gl->rounds, &job);
+		if (result != GZ_OK || plan->tile_count == tiles)
+			return result;
+		job.first = tiles;
+		part = gz_gl_rounds_part(plan, tiles);
+		result = take_tiles(gl, &part);
+		if (result == GZ_OK)
+			result = cast_levels(gl, shot->settings, false);
+		if (result != GZ_OK)
+			return result;
+	}
+	return GZ_OK;
+}
+
+/* All rounds of a plan that refines; after them the device has the tiles to show. */
+static enum gz_result cast_rounds(struct gl_raycaster *gl, const struct gz_shot *shot)
+{
+	struct gz_plan shown;
+	enum gz_result result = cast_further_rounds(gl, shot);
+	if (result == GZ_OK && shot->plan->tile_count > shot->plan->first_round.tile_count) {
+		result = gz_gl_rounds_show(&gl->rounds, shot->plan, &shown);
+		if (result == GZ_OK)
+			result = take_tiles(gl, &shown);
+	}
+	if (result == GZ_ERR_NO_MEM)
+		gz_err(gl->base.log, "no memory to refine the plan: take another method");
+	return result;
+}
+
 /* All passes of a frame. */
 static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *shot)
 {
@@ -215,6 +275,8 @@ static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *
 		result = gz_gl_cast_set_hits(&gl->cast, &gl->plan, plan, shot->hits);
 	if (result == GZ_OK)
 		result = cast_levels(gl, shot->settings, shot->hits != NULL);
+	if (result == GZ_OK && shot->refined && shot->plan->refines)
+		result = cast_rounds(gl, shot);
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
 	if (result == GZ_OK)
 		result = gz_gl_reconstruct(&gl->reconstruct, &job);
@@ -307,6 +369,11 @@ static unsigned gl_picture_texture(const struct gz_raycaster *raycaster)
 	return ((const struct gl_raycaster *)raycaster)->colours.picture;
 }
 
+static bool gl_refines(const struct gz_raycaster *raycaster)
+{
+	return !((const struct gl_raycaster *)raycaster)->scene.bricked;
+}
+
 static const char *gl_describe(const struct gz_raycaster *raycaster)
 {
 	return ((const struct gl_raycaster *)raycaster)->device.description;
@@ -319,6 +386,7 @@ const struct gz_raycaster_ops gz_gl_raycaster_ops = {
 	.set_transfer = gl_set_transfer,
 	.draw = gl_draw,
 	.shade = gl_shade,
+	.refines = gl_refines,
 	.picture_texture = gl_picture_texture,
 	.describe = gl_describe,
 	.destroy = gl_destroy,

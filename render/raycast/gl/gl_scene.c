@@ -18,7 +18,7 @@ static void free_levels(struct gz_gl_scene *scene)
 }
 
 /* Threads for work on the processor; NULL if there are none, then the caller does the work. */
-static struct gz_workers *workers_of(struct gz_gl_scene *scene)
+struct gz_workers *gz_gl_scene_workers(struct gz_gl_scene *scene)
 {
 	if (!scene->workers && gz_workers_create(0, &scene->workers) != GZ_OK)
 		scene->workers = NULL;
@@ -38,7 +38,7 @@ static bool cells_fit(const struct gz_gl_scene *scene, const struct gz_gl_device
 static enum gz_result set_bricks(struct gz_gl_scene *scene, const struct gz_gl_device *device,
 				 const struct gz_log *log)
 {
-	gz_detail_make_levels(&scene->detail, workers_of(scene), NULL, log);
+	gz_detail_make_levels(&scene->detail, gz_gl_scene_workers(scene), NULL, log);
 	if (!cells_fit(scene, device)) {
 		gz_err(log,
 		       "the macrocells of a volume of %d x %d x %d voxels are beyond this OpenGL's "
@@ -154,7 +154,7 @@ static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_
 		return GZ_OK;
 	struct gz_preintegration *preintegration = &scene->preintegration;
 	result = gz_preintegration_make(preintegration, scene->table, lengths, plan->step_count,
-					workers_of(scene));
+					gz_gl_scene_workers(scene));
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for pre-integrated tables: take sampled");
 		return result;
@@ -212,7 +212,7 @@ static enum gz_result prepare_shadows(struct gz_gl_scene *scene, const struct gz
 			      rays->integration == GZ_INTEGRATION_PREINTEGRATED,
 		.shades = frame->shades,
 		.shade_count = frame->shade_count,
-		.workers = workers_of(scene),
+		.workers = gz_gl_scene_workers(scene),
 		.log = log,
 	};
 	struct gz_light_grid *grid = &scene->light_grid;
@@ -231,7 +231,7 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_g
 {
 	const struct gz_lighting *lighting = &scene->lighting;
 	enum gz_result result = gz_lighting_prepare(&scene->lighting, scene->volume, scene->table,
-						    frame->rays, workers_of(scene), log);
+						    frame->rays, gz_gl_scene_workers(scene), log);
 	if (result == GZ_OK && lighting->current && scene->occlusion_serial != lighting->serial) {
 		result = load_grid(&scene->occlusion, device, lighting->occlusion.dims,
 				   lighting->occlusion.cells, log);
@@ -258,8 +258,9 @@ enum gz_result gz_gl_scene_shade(struct gz_gl_scene *scene, const struct gz_ray_
 				 const struct gz_ray_frame *world, const struct gz_log *log,
 				 struct gz_shade *out_shade)
 {
-	const enum gz_result result = gz_lighting_prepare(
-		&scene->lighting, scene->volume, scene->table, rays, workers_of(scene), log);
+	const enum gz_result result =
+		gz_lighting_prepare(&scene->lighting, scene->volume, scene->table, rays,
+				    gz_gl_scene_workers(scene), log);
 	return result == GZ_OK ? gz_volume_shade_make(&scene->lighting,
 						      gz_cast_kernels_find(NULL)->arriving, rays,
 						      world, log, &scene->shade, out_shade)
@@ -272,7 +273,7 @@ static void prepare_levels(struct gz_gl_scene *scene, const struct gz_gl_device 
 {
 	if (scene->level_count > 1 || scene->detail.failed || scene->bricked)
 		return;
-	gz_detail_make_levels(&scene->detail, workers_of(scene), scene->table, log);
+	gz_detail_make_levels(&scene->detail, gz_gl_scene_workers(scene), scene->table, log);
 	const int count = scene->detail.levels.count;
 	for (int i = 1; i < count; i++) {
 		if (gz_gl_volume_load(&scene->levels[i], device,

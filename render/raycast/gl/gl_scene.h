@@ -57,6 +57,10 @@ struct gz_gl_scene {
 	double prepare_ms;            /**< that the last frame spent on what later frames reuse */
 };
 
+/** The threads that help the device's processor side, started when first asked for. NULL: there is
+ *  no memory for them. */
+struct gz_workers *gz_gl_scene_workers(struct gz_gl_scene *scene);
+
 /**
  * Show @p volume, borrowed until the next call or gz_gl_scene_free(): whole if the device has room,
  * else by bricks. A file of bricks is always shown by bricks.

@@ -36,6 +36,9 @@ struct gz_raycaster_ops {
 	/** See gz_raycaster_shade(); only with light.shadow_steps. */
 	enum gz_result (*shade)(struct gz_raycaster *raycaster, const struct gz_shot *shot,
 				struct gz_shade *out_shade);
+	/** Whether draw() refines plans (gz_plan_refine()) of what is shown. Bricks are asked for
+	 *  by the plan before any ray is cast, so they have to do without. */
+	bool (*refines)(const struct gz_raycaster *raycaster);
 	/** Optional: see gz_drawer_ops. */
 	unsigned (*picture_texture)(const struct gz_raycaster *raycaster);
 	/** One line for reports, as in "avx512, 2 threads". */

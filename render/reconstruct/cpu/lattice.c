@@ -60,6 +60,17 @@ void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile)
 		memset(row, 2 * tile->layer + tile->pattern, width);
 }
 
+void gz_lattices_unmark(struct gz_lattices *lattices, const struct gz_plan *plan, size_t from)
+{
+	for (size_t i = from; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		if (tile->layer == 0)
+			lattices->blocks[(ptrdiff_t)(tile->y / GZ_BLOCK_EDGE) *
+						 lattices->block_columns +
+					 tile->x / GZ_BLOCK_EDGE] = 0;
+	}
+}
+
 static void store_point(const struct gz_lattice *lattice, int column, int row, uint32_t pixel)
 {
 	if (column < lattice->columns && row < lattice->rows)

@@ -44,6 +44,10 @@ enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz
  */
 void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile);
 
+/** Note that tiles of layer 0 cover the blocks that tiles from @p from on lie in, in place of the
+ *  coarser ones of an earlier round. After this, threads may store these tiles. */
+void gz_lattices_unmark(struct gz_lattices *lattices, const struct gz_plan *plan, size_t from);
+
 /**
  * Store the colours of a tile's rays on its layer's lattice. In a pyramid, store them on all
  * coarser lattices that have the point too, and mark the tile's blocks.

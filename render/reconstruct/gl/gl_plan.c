@@ -162,6 +162,8 @@ enum gz_result gz_gl_plan_prepare(struct gz_gl_plan *gl_plan, const struct gz_gl
 {
 	struct gz_gl_plan_block block = { 0 };
 	gl_plan->point_count = lay_out_lattices(plan, &block);
+	for (int i = 0; i < plan->layer_count; i++)
+		gl_plan->layer_first[i] = block.layers[i][0];
 	const size_t bytes = gl_plan->point_count * sizeof(uint32_t);
 	if ((int64_t)bytes > device->storage_max) {
 		gz_err(log,

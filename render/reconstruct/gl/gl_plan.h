@@ -65,6 +65,7 @@ struct gz_gl_tile_levels {
 /** Zero-initialised is empty. */
 struct gz_gl_plan {
 	struct gz_gl_buffer block, tiles, spans;
+	size_t layer_first[GZ_PLAN_LAYERS_MAX]; /**< number of each lattice's first point */
 	size_t point_count; /**< points of all lattices of a plane, its picture included */
 	/** The plan and levels whose tiles the device has, so that an unchanged plan is not packed
 	 *  again. The plan's pointers are not followed. */

@@ -1,0 +1,450 @@
+/* Plans that are refined where neighbouring rays differ. */
+#include "suite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/workers.h"
+#include "render/contrast/contrast.h"
+#include "render/plan/method.h"
+#include "render/plan/plan.h"
+#include "render/reconstruct/cpu/lattice.h"
+#include "small_scene.h"
+
+static struct gz_plan_request request_for(const struct gz_foveation *foveation,
+					  const struct gz_display *display, struct gz_point gaze)
+{
+	struct gz_plan_request request =
+		gz_plan_request_make(foveation, display, gaze, display->px[0], display->px[1]);
+	request.refines = true;
+	return request;
+}
+
+static struct gz_foveation contrast_foveation(void)
+{
+	struct gz_foveation foveation = small_scene_foveation();
+	foveation.method = GZ_METHOD_CONTRAST;
+	return foveation;
+}
+
+/* Spacing that a tile's pattern has, px. */
+static double spacing_of(const struct gz_plan *plan, const struct gz_tile *tile)
+{
+	return plan->layers[tile->layer].spacing *
+	       (tile->pattern == GZ_TILE_QUINCUNX ? sqrt(2) : 1);
+}
+
+/* By pixel: the spacing of the tile that shows there; 0: none. */
+static double *shown_spacings(const struct gz_plan *plan)
+{
+	double *spacings = calloc((size_t)plan->width * (size_t)plan->height, sizeof *spacings);
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		if (tile->replaced)
+			continue;
+		const int down = GZ_TILE_EDGE * plan->layers[tile->layer].spacing;
+		const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
+		for (int y = tile->y; y < tile->y + down && y < plan->height; y++)
+			for (int x = tile->x; x < tile->x + across && x < plan->width; x++) {
+				double *spacing = &spacings[y * plan->width + x];
+				if (*spacing > 0)
+					fail_msg("two tiles show pixel %d %d", x, y);
+				*spacing = spacing_of(plan, tile);
+			}
+	}
+	return spacings;
+}
+
+/* Each pixel is shown by one tile, no coarser than before and no finer than acuity's, and the rays
+ * are counted. */
+static void check_refined(const struct gz_plan *plan, const struct gz_plan *acuity, double *before)
+{
+	double *spacings = shown_spacings(plan), *finest = shown_spacings(acuity);
+	uint64_t rays = 0;
+	for (size_t i = 0; i < plan->tile_count; i++)
+		rays += (uint64_t)__builtin_popcount(gz_plan_tile_active(plan, &plan->tiles[i]));
+	assert_int_equal(rays, plan->ray_count);
+	for (int i = 0; i < plan->width * plan->height; i++) {
+		if (spacings[i] == 0 || spacings[i] > before[i] || spacings[i] < finest[i])
+			fail_msg("pixel %d %d: spacing %g, before %g, acuity %g", i % plan->width,
+				 i / plan->width, spacings[i], before[i], finest[i]);
+		before[i] = spacings[i];
+	}
+	free(spacings);
+	free(finest);
+}
+
+static void fill_contrasts(float *contrasts, size_t count, unsigned *seed)
+{
+	for (size_t i = 0; i < count; i++) {
+		*seed = *seed * 1664525U + 1013904223U;
+		const float share = (float)(*seed >> 8) / (float)(1 << 24);
+		contrasts[i] = share * share * share;
+	}
+}
+
+static void refined_plans_show_each_pixel_once_and_no_finer_than_acuity(void **state)
+{
+	(void)state;
+	static const struct gz_point gazes[] = { { 0.5F, 0.5F },
+						 { 0.03F, 0.97F },
+						 { -0.2F, 0.4F } };
+	static const int sizes[][2] = { { 1920, 1080 }, { 331, 217 }, { 7, 3 }, { 1, 1 } };
+	unsigned seed = 1;
+	for (size_t s = 0; s < 4; s++)
+		for (size_t g = 0; g < 3; g++) {
+			struct gz_foveation foveation = contrast_foveation();
+			const struct gz_display display =
+				gz_display_default(sizes[s][0], sizes[s][1]);
+			struct gz_plan plan = { 0 }, acuity = { 0 };
+			const struct gz_plan_request request =
+				request_for(&foveation, &display, gazes[g]);
+			assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+			foveation.method = GZ_METHOD_ACUITY;
+			assert_int_equal(gz_plan_make(&foveation, &display, gazes[g], sizes[s][0],
+						      sizes[s][1], &acuity),
+					 GZ_OK);
+			double *before = shown_spacings(&plan);
+			check_refined(&plan, &acuity, before);
+			for (int round = 0, first = 0; round < 3; round++) {
+				const size_t count = plan.tile_count - (size_t)first;
+				float *contrasts = malloc((count + 1) * sizeof *contrasts);
+				fill_contrasts(contrasts, count, &seed);
+				assert_int_equal(gz_plan_refine(&plan, (size_t)first, contrasts),
+						 GZ_OK);
+				first += (int)count;
+				check_refined(&plan, &acuity, before);
+				free(contrasts);
+			}
+			free(before);
+			gz_plan_free(&plan);
+			gz_plan_free(&acuity);
+		}
+}
+
+static void full_contrast_needs_the_tiles_of_acuity(void **state)
+{
+	(void)state;
+	struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(1280, 720);
+	const struct gz_point gaze = { 0.4F, 0.6F };
+	struct gz_plan plan = { 0 }, acuity = { 0 };
+	const struct gz_plan_request request = request_for(&foveation, &display, gaze);
+	/* An eye that sees everything, so that acuity alone is the bound. */
+	foveation.contrast_threshold = 0.0001;
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	const size_t first = plan.tile_count;
+	assert_true(plan.ray_count > 0);
+	float *contrasts = malloc(first * sizeof *contrasts);
+	for (size_t i = 0; i < first; i++)
+		contrasts[i] = 1;
+	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	foveation.method = GZ_METHOD_ACUITY;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 1280, 720, &acuity), GZ_OK);
+	double *made = shown_spacings(&plan), *wanted = shown_spacings(&acuity);
+	assert_memory_equal(made, wanted, 1280 * 720 * sizeof *made);
+	free(made);
+	free(wanted);
+	free(contrasts);
+	gz_plan_free(&plan);
+	gz_plan_free(&acuity);
+}
+
+static void a_plan_made_again_forgets_its_further_rounds(void **state)
+{
+	(void)state;
+	const struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(640, 360);
+	const struct gz_plan_request request =
+		request_for(&foveation, &display, (struct gz_point) { 0.5F, 0.5F });
+	struct gz_plan plan = { 0 }, other = { 0 };
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	assert_int_equal(gz_plan_update(&request, &other), GZ_OK);
+	const uint64_t serial = plan.serial, rays = plan.ray_count;
+	const size_t tiles = plan.tile_count;
+	assert_true(gz_plan_same(&plan, &other));
+
+	float *contrasts = calloc(tiles, sizeof *contrasts);
+	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	assert_int_equal(plan.tile_count, tiles);
+	assert_int_equal(plan.serial, serial);
+	contrasts[tiles / 2] = contrasts[tiles / 2 - 1] = 1;
+	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	assert_true(plan.tile_count > tiles && plan.ray_count > rays);
+	assert_true(plan.serial > serial);
+	assert_false(gz_plan_same(&plan, &other));
+	assert_false(gz_plan_same(&other, &plan));
+
+	const uint64_t refined = plan.serial;
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	assert_true(plan.serial > refined);
+	assert_int_equal(plan.tile_count, tiles);
+	assert_int_equal(plan.ray_count, rays);
+	assert_memory_equal(plan.tiles, other.tiles, tiles * sizeof *plan.tiles);
+	free(contrasts);
+	gz_plan_free(&plan);
+	gz_plan_free(&other);
+}
+
+/* Where nothing refines, the method is acuity with other steps. */
+static void a_technique_that_does_not_refine_takes_the_tiles_of_acuity(void **state)
+{
+	(void)state;
+	struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(640, 360);
+	const struct gz_point gaze = { 0.3F, 0.5F };
+	struct gz_plan plan = { 0 }, acuity = { 0 }, lost = { 0 };
+	struct gz_plan_request request = request_for(&foveation, &display, gaze);
+	request.widen = 0.5;
+	assert_int_equal(gz_plan_update(&request, &lost), GZ_OK);
+	assert_int_equal(gz_plan_rounds(&lost), 1);
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 640, 360, &plan), GZ_OK);
+	assert_int_equal(gz_plan_rounds(&plan), 1);
+	foveation.method = GZ_METHOD_ACUITY;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 640, 360, &acuity), GZ_OK);
+	assert_int_equal(plan.ray_count, acuity.ray_count);
+	assert_int_equal(plan.tile_count, acuity.tile_count);
+	gz_plan_free(&plan);
+	gz_plan_free(&acuity);
+	gz_plan_free(&lost);
+}
+
+/* Geisler and Perry's formula, the other way round: the contrast that is just seen at the spacing's
+ * frequency is the one asked for. */
+static void a_contrast_is_shown_as_finely_as_it_is_seen(void **state)
+{
+	(void)state;
+	const struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(1920, 1080);
+	const struct gz_point gaze = { 0.5F, 0.5F };
+	const double contrasts[] = { 0.02, 0.1, 1 };
+	for (int i = 0; i < 3; i++)
+		for (int place = 0; place < 2; place++) {
+			const struct gz_point at = { 0.5F + 0.3F * (float)place, 0.5F };
+			const double spacing = gz_plan_contrast_spacing_px(
+				&foveation, &display, contrasts[i], gaze, at, 1920, 1080);
+			const struct gz_point next = { at.x + 1.0F / 1920, at.y };
+			/* across the line of sight a pixel spans more: 1 / cosine */
+			const double e = gz_display_angle_deg(&display, gaze, at);
+			const double px_deg =
+				gz_display_angle_deg(&display, at, next) / cos(e * M_PI / 180);
+			const double f = 1 / (2 * spacing * px_deg);
+			const double threshold = 1.0 / 64 * exp(0.106 * f * (e + 2.3) / 2.3);
+			if (fabs(threshold / contrasts[i] - 1) > 0.01)
+				fail_msg("contrast %g at %g degrees: spacing %g px, threshold %g",
+					 contrasts[i], e, spacing, threshold);
+		}
+	assert_true(isinf(gz_plan_contrast_spacing_px(&foveation, &display, 1.0 / 64, gaze, gaze,
+						      1920, 1080)));
+	assert_true(isinf(
+		gz_plan_contrast_spacing_px(&foveation, &display, 0, gaze, gaze, 1920, 1080)));
+}
+
+/* A first round whose points are those of a picture. */
+struct shown {
+	struct gz_plan plan;
+	struct gz_lattices lattices;
+	struct gz_contrasts contrasts;
+	uint32_t *picture;
+};
+
+enum { SHOWN_WIDTH = 640, SHOWN_HEIGHT = 360 };
+
+static uint32_t grey(double share)
+{
+	const uint32_t level = (uint32_t)lround(255 * share);
+	return level | level << 8 | level << 16 | 0xFF000000U;
+}
+
+/* Grey value [0, 1] of a pixel; the curve of a display is a square. */
+typedef double picture_function(int x, int y);
+
+static struct shown show(picture_function *picture, int threads)
+{
+	struct shown shown = { 0 };
+	const struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(SHOWN_WIDTH, SHOWN_HEIGHT);
+	const struct gz_plan_request request =
+		request_for(&foveation, &display, (struct gz_point) { 0.5F, 0.5F });
+	struct gz_workers *workers;
+	assert_int_equal(gz_plan_update(&request, &shown.plan), GZ_OK);
+	shown.picture = aligned_alloc(64, (size_t)SHOWN_WIDTH * SHOWN_HEIGHT * 4);
+	assert_int_equal(gz_lattices_prepare(&shown.lattices, &shown.plan, shown.picture), GZ_OK);
+	for (size_t i = 0; i < shown.plan.tile_count; i++) {
+		const struct gz_tile *tile = &shown.plan.tiles[i];
+		const int spacing = shown.plan.layers[tile->layer].spacing;
+		uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE];
+		for (int ray = 0; ray < GZ_TILE_EDGE * GZ_TILE_EDGE; ray++)
+			pixels[ray] = grey(
+				picture(tile->x + gz_tile_columns[tile->pattern][ray] * spacing,
+					tile->y + gz_tile_rows[ray] * spacing));
+		gz_lattices_store(&shown.lattices, &shown.plan, tile,
+				  gz_plan_tile_active(&shown.plan, tile), pixels);
+	}
+	assert_int_equal(gz_workers_create(threads, &workers), GZ_OK);
+	assert_int_equal(
+		gz_contrasts_measure(&shown.plan, 0, &shown.lattices, workers, &shown.contrasts),
+		GZ_OK);
+	gz_workers_destroy(&workers);
+	return shown;
+}
+
+static void shown_free(struct shown *shown)
+{
+	gz_plan_free(&shown->plan);
+	gz_lattices_free(&shown->lattices);
+	gz_contrasts_free(&shown->contrasts);
+	free(shown->picture);
+}
+
+static double flat(int x, int y)
+{
+	(void)x;
+	(void)y;
+	return 0.7;
+}
+
+static double slope(int x, int y)
+{
+	(void)y;
+	return sqrt(0.2 + 0.6 * x / 1000.0);
+}
+
+enum { EDGE_X = 301 };
+
+/* Luminances .6 and .4: half of Michelson's contrast is .1. */
+static double edge(int x, int y)
+{
+	(void)y;
+	return sqrt(x < EDGE_X ? 0.4 : 0.6);
+}
+
+static void what_is_flat_or_rises_evenly_has_no_contrast(void **state)
+{
+	(void)state;
+	static picture_function *const pictures[] = { flat, slope };
+	for (int p = 0; p < 2; p++) {
+		struct shown shown = show(pictures[p], 2);
+		for (size_t i = 0; i < shown.plan.tile_count; i++)
+			if (shown.contrasts.of[i] > (p == 0 ? 0 : 0.012F))
+				fail_msg("picture %d, tile at %d %d: %g", p, shown.plan.tiles[i].x,
+					 shown.plan.tiles[i].y, (double)shown.contrasts.of[i]);
+		shown_free(&shown);
+	}
+}
+
+/* Also where the neighbours' points lie farther apart than a tile's own. */
+static void an_edge_is_found_by_every_tile_that_it_crosses(void **state)
+{
+	(void)state;
+	struct shown shown = show(edge, 3);
+	int crossed = 0, patterns[GZ_TILE_PATTERN_COUNT] = { 0 };
+	for (size_t i = 0; i < shown.plan.tile_count; i++) {
+		const struct gz_tile *tile = &shown.plan.tiles[i];
+		int level;
+		if (tile->y >= SHOWN_HEIGHT || !gz_plan_node_of(tile, &level))
+			continue;
+		const int across = GZ_TILE_EDGE << level;
+		const float contrast = shown.contrasts.of[i];
+		if (tile->x < EDGE_X && EDGE_X <= tile->x + across) {
+			crossed++;
+			patterns[tile->pattern]++;
+			if (!(contrast > 0.08F && contrast < 0.115F))
+				fail_msg("tile at %d %d: %g", tile->x, tile->y, (double)contrast);
+		} else if (tile->x > EDGE_X + 64 || tile->x + across < EDGE_X - 64) {
+			if (contrast > 0.001F)
+				fail_msg("tile at %d %d, beside the edge: %g", tile->x, tile->y,
+					 (double)contrast);
+		}
+	}
+	assert_true(crossed > 10 && patterns[GZ_TILE_SQUARE] > 0 && patterns[GZ_TILE_QUINCUNX] > 0);
+	shown_free(&shown);
+}
+
+/* Rays of a frame by a method, which is drawn twice by one plan, with another frame between. */
+static uint64_t draw_twice(struct gz_raycaster *renderer, struct small_scene *scene, int method,
+			   struct gz_image *image)
+{
+	enum { WIDTH = 900, HEIGHT = 700 };
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	struct gz_plan plan = { 0 };
+	struct gz_image again = { 0 };
+	struct gz_frame_stats stats, other, last;
+	scene->foveation.method = method;
+	small_scene_render_plan(renderer, scene, &display, WIDTH, HEIGHT, &plan, image, &stats);
+	struct small_scene turned = *scene;
+	turned.camera.eye[0] += 0.4;
+	small_scene_render_plan(renderer, &turned, &display, WIDTH, HEIGHT, &plan, &again, &other);
+	small_scene_render_plan(renderer, scene, &display, WIDTH, HEIGHT, &plan, &again, &last);
+	assert_int_equal(stats.rays, last.rays);
+	assert_memory_equal(image->pixels, again.pixels, (size_t)WIDTH * HEIGHT * 4);
+	gz_plan_free(&plan);
+	gz_image_free(&again);
+	return stats.rays;
+}
+
+static double psnr_db(const struct gz_image *a, const struct gz_image *b)
+{
+	double squares = 0;
+	for (int i = 0; i < a->width * a->height * 4; i++)
+		squares += pow(a->pixels[i] - b->pixels[i], 2);
+	return 10 * log10(255.0 * 255 / (squares / (a->width * a->height * 3)));
+}
+
+static void a_flat_picture_takes_the_first_rays_alone(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_constant(20, 0);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image image = { 0 };
+	scene.rays.background[1] = 0.5;
+	const uint64_t acuity = draw_twice(renderer, &scene, GZ_METHOD_ACUITY, &image);
+	const uint64_t contrast = draw_twice(renderer, &scene, GZ_METHOD_CONTRAST, &image);
+	if (contrast * 3 > acuity)
+		fail_msg("%llu rays, acuity %llu", (unsigned long long)contrast,
+			 (unsigned long long)acuity);
+	gz_image_free(&image);
+	gz_raycaster_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+static void rays_go_where_there_is_contrast(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(48, 48, 48, GZ_VOXEL_U8);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, NULL);
+	struct gz_image full = { 0 }, first = { 0 }, image = { 0 };
+	draw_twice(renderer, &scene, GZ_METHOD_STANDARD, &full);
+	const uint64_t acuity = draw_twice(renderer, &scene, GZ_METHOD_ACUITY, &image);
+	scene.foveation.contrast_rounds = 1;
+	const uint64_t alone = draw_twice(renderer, &scene, GZ_METHOD_CONTRAST, &first);
+	scene.foveation.contrast_rounds = 3;
+	const uint64_t contrast = draw_twice(renderer, &scene, GZ_METHOD_CONTRAST, &image);
+	assert_true(alone < contrast && contrast < acuity);
+	const double gained = psnr_db(&full, &image) - psnr_db(&full, &first);
+	if (gained < 1)
+		fail_msg("%g dB gained by %llu rays beside %llu", gained,
+			 (unsigned long long)(contrast - alone), (unsigned long long)alone);
+	gz_image_free(&full);
+	gz_image_free(&first);
+	gz_image_free(&image);
+	gz_raycaster_destroy(&renderer);
+	small_scene_free(&scene);
+}
+
+TEST_SUITE(contrast)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(refined_plans_show_each_pixel_once_and_no_finer_than_acuity),
+		cmocka_unit_test(full_contrast_needs_the_tiles_of_acuity),
+		cmocka_unit_test(a_plan_made_again_forgets_its_further_rounds),
+		cmocka_unit_test(a_technique_that_does_not_refine_takes_the_tiles_of_acuity),
+		cmocka_unit_test(a_contrast_is_shown_as_finely_as_it_is_seen),
+		cmocka_unit_test(what_is_flat_or_rises_evenly_has_no_contrast),
+		cmocka_unit_test(an_edge_is_found_by_every_tile_that_it_crosses),
+		cmocka_unit_test(a_flat_picture_takes_the_first_rays_alone),
+		cmocka_unit_test(rays_go_where_there_is_contrast),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
