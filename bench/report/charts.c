@@ -319,9 +319,10 @@ static const struct entry entries[] = {
 	{ "standard", 0x3d444d, 0xc9d1d9, 5 }, { "acuity", 0xb84700, 0xff9a52, 7 },
 	{ "mdc", 0x0067a3, 0x62bbf2, 9 },      { "ddc", 0x00755a, 0x41cfa4, 13 },
 	{ "mdc3", 0x7c3a9a, 0xd6a1f0, 11 },    { "uniform", 0x6b5f00, 0xd9c64a, 15 },
-	{ "table", 0xa6265e, 0xf590b8, 4 },    { NULL, GZ_COLOUR_INK, 0xe6e9ed, 0 },
-	{ NULL, GZ_COLOUR_GRID, 0x2c3239, 0 }, { NULL, GZ_COLOUR_MUTE, 0x9aa4af, 0 },
-	{ NULL, GZ_COLOUR_PALE, 0x47505a, 0 }, { NULL, GZ_COLOUR_PAGE, 0x14171b, 0 },
+	{ "table", 0xa6265e, 0xf590b8, 4 },    { "contrast", 0x3457c9, 0x9db7ff, 3 },
+	{ NULL, GZ_COLOUR_INK, 0xe6e9ed, 0 },  { NULL, GZ_COLOUR_GRID, 0x2c3239, 0 },
+	{ NULL, GZ_COLOUR_MUTE, 0x9aa4af, 0 }, { NULL, GZ_COLOUR_PALE, 0x47505a, 0 },
+	{ NULL, GZ_COLOUR_PAGE, 0x14171b, 0 },
 };
 
 struct gz_method_look gz_method_look(const char *method)

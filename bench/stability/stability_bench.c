@@ -146,8 +146,9 @@ int gz_stability_rules(const struct gz_stability_bench *bench,
 		return 1;
 	out_rules[0] = GZ_STEP_METHOD;
 	out_rules[1] = GZ_STEP_DISTANCE;
-	out_rules[2] = gz_method_of(&bench->foveation)->own_steps == GZ_STEPS_RUNG ? GZ_STEP_NONE
-										   : GZ_STEP_ACUITY;
+	const enum gz_plan_steps own = gz_method_of(&bench->foveation)->own_steps;
+	out_rules[2] =
+		own == GZ_STEPS_RUNG || own == GZ_STEPS_PLACE ? GZ_STEP_NONE : GZ_STEP_ACUITY;
 	return 3;
 }
 

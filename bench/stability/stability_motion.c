@@ -256,7 +256,7 @@ enum gz_result gz_stability_saccade(struct gz_stability_bench *bench,
 		outcome->verdict = GZ_STABILITY_APART;
 		snprintf(outcome->note, sizeof outcome->note, "%s",
 			 sharp ? "the picture is narrower than the saccade"
-			       : "uniform is not sharp anywhere");
+			       : "the method promises no sharp pixel");
 		return GZ_OK;
 	}
 	gz_stability_name(outcome, 0, "pixels of the fovea that are not those of standard", 0);

@@ -205,7 +205,7 @@ def render(
     transfer: as Renderer.set_transfer(). camera: keys of section [camera], such as {"eye": (0, -2, 0), "up":
     (0, 0, 1), "fov_deg": 40}, in units of the volume's longest edge with the centre at 0 0 0; None: one that sees
     all of it. gaze: fractions of the picture; None: its centre. method: "standard" (a ray for every pixel),
-    "acuity", "mdc", "ddc", "mdc3" or "uniform". settings: further keys of a scene.
+    "acuity", "contrast", "mdc", "ddc", "mdc3" or "uniform". settings: further keys of a scene.
     """
     with Renderer(backend, threads) as renderer:
         for key, value in (settings or {}).items():

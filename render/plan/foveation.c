@@ -27,7 +27,7 @@ const struct gz_option gz_foveation_options[] = {
 		  "interleaved where surfaces are lit" },
 	{ "foveation.reconstruction", GZ_OPTION_CHOICE, AT(filter), .choices = gz_filter_names,
 	  .preset = "catmull_rom",
-	  .help = "acuity, table: filter that fills the pixels between rays" },
+	  .help = "acuity, table, contrast: filter that fills the pixels between rays" },
 	{ "foveation.acuity_slope", GZ_OPTION_DOUBLE, AT(acuity_slope), 0.001, 1, .preset = "0.022",
 	  .help = "loss of acuity: degrees per cycle for each degree of eccentricity" },
 	/* The preset is 1/48. */
@@ -40,7 +40,7 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.contrast_first", GZ_OPTION_DOUBLE, AT(contrast_first), 2, 8, .preset = "2",
 	  .help = "contrast: how far apart the first rays are, as a multiple of what the eye "
 		  "resolves" },
-	{ "foveation.contrast_rounds", GZ_OPTION_INT, AT(contrast_rounds), 1, 4, .preset = "3",
+	{ "foveation.contrast_rounds", GZ_OPTION_INT, AT(contrast_rounds), 1, 4, .preset = "2",
 	  .help = "contrast: most rounds of rays for a picture" },
 	{ "foveation.mdc_square_px", GZ_OPTION_DOUBLE, AT(mdc_square_px), 1, GZ_IMAGE_SIDE_MAX,
 	  .preset = "350", .help = "mdc, mdc3: edge of the fine square, px" },

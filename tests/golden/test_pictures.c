@@ -39,15 +39,18 @@ static void render(const struct gz_scene *scene, int method, struct gz_image *im
 	foveation.ddc_middle_px[0] = 90;
 	foveation.ddc_middle_px[1] = 70;
 	foveation.acuity_slope = 0.2; /* as if the eye were worse, so that every rung is taken */
-	assert_int_equal(gz_plan_make(&foveation, &display, (struct gz_point) { 0.4F, 0.55F },
-				      WIDTH, HEIGHT, &plan),
-			 GZ_OK);
+	struct gz_plan_request request = gz_plan_request_make(
+		&foveation, &display, (struct gz_point) { 0.4F, 0.55F }, WIDTH, HEIGHT);
+	request.refines = true;
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
 	assert_int_equal(gz_raycaster_create("cpu", NULL, NULL, &renderer), GZ_OK);
 	assert_int_equal(gz_raycaster_set_volume(renderer, &scene->volume), GZ_OK);
 	assert_int_equal(gz_raycaster_set_transfer(renderer, &scene->transfer), GZ_OK);
-	assert_int_equal(gz_raycaster_render(renderer, &scene->settings.camera,
-					     &scene->settings.rays, &plan, image, NULL),
-			 GZ_OK);
+	const struct gz_shot shot = { .camera = &scene->settings.camera,
+				      .settings = &scene->settings.rays,
+				      .plan = &plan,
+				      .refined = &plan };
+	assert_int_equal(gz_raycaster_draw(renderer, &shot, image, NULL), GZ_OK);
 	gz_raycaster_destroy(&renderer);
 	gz_plan_free(&plan);
 }

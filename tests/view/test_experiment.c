@@ -159,7 +159,7 @@ static const struct {
 	  "scene, as in scene = other.scene" },
 	{ HEAD "[trial a]\nb.foveation.method = sharp\n",
 	  "/place/e.experiment:5: [trial a] b.foveation.method: sharp is not standard, mdc, "
-	  "ddc, acuity, mdc3, uniform or table" },
+	  "ddc, acuity, mdc3, uniform, table or contrast" },
 	{ HEAD "[trial a]\nview.overlay = step\n",
 	  "/place/e.experiment:5: [trial a] view.overlay: belongs to a window with panels; an "
 	  "experiment shows only the picture" },

@@ -117,6 +117,7 @@ static const struct gz_window_action basics_actions[] = {
 	METHOD(5, 4, "5", "method mdc3: three squares", "MDC3"),
 	METHOD(6, 5, "6", "method uniform: the same everywhere", "Uniform"),
 	METHOD(7, 6, "7", "method table: spacings from a file", "Table"),
+	METHOD(8, 7, "8", "method contrast: rays where the eye sees contrast", "Contrast"),
 	{ .letter = 'c',
 	  .keys = "C",
 	  .help = "cross at the gaze",
