@@ -242,16 +242,16 @@ static enum gz_result cast_further_rounds(struct gl_raycaster *gl, const struct 
 	return GZ_OK;
 }
 
-/* All rounds of a plan that refines; after them the device has the tiles to show. */
-static enum gz_result cast_rounds(struct gl_raycaster *gl, const struct gz_shot *shot)
+/* All rounds of a plan that refines; after them the device has the tiles to show, those of
+ * @p out_shown. */
+static enum gz_result cast_rounds(struct gl_raycaster *gl, const struct gz_shot *shot,
+				  struct gz_plan *out_shown)
 {
-	struct gz_plan shown;
 	enum gz_result result = cast_further_rounds(gl, shot);
-	if (result == GZ_OK && shot->plan->tile_count > shot->plan->first_round.tile_count) {
-		result = gz_gl_rounds_show(&gl->rounds, shot->plan, &shown);
-		if (result == GZ_OK)
-			result = take_tiles(gl, &shown);
-	}
+	if (result == GZ_OK)
+		result = gz_gl_rounds_show(&gl->rounds, shot->plan, out_shown);
+	if (result == GZ_OK && shot->plan->tile_count > shot->plan->first_round.tile_count)
+		result = take_tiles(gl, out_shown);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(gl->base.log, "no memory to refine the plan: take another method");
 	return result;
@@ -261,7 +261,8 @@ static enum gz_result cast_rounds(struct gl_raycaster *gl, const struct gz_shot 
 static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *shot)
 {
 	const struct gz_plan *plan = shot->plan;
-	const struct gz_gl_reconstruct_job job = {
+	struct gz_plan shown;
+	struct gz_gl_reconstruct_job job = {
 		.device = &gl->device,
 		.gl_plan = &gl->plan,
 		.plan = plan,
@@ -275,8 +276,10 @@ static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *
 		result = gz_gl_cast_set_hits(&gl->cast, &gl->plan, plan, shot->hits);
 	if (result == GZ_OK)
 		result = cast_levels(gl, shot->settings, shot->hits != NULL);
-	if (result == GZ_OK && shot->refined && shot->plan->refines)
-		result = cast_rounds(gl, shot);
+	if (result == GZ_OK && shot->refined && plan->refines) {
+		result = cast_rounds(gl, shot, &shown);
+		job.plan = &shown;
+	}
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_CAST);
 	if (result == GZ_OK)
 		result = gz_gl_reconstruct(&gl->reconstruct, &job);
