@@ -145,7 +145,7 @@ static enum gz_result take_files(struct numbered_files *files,
 	for (size_t i = 0; i < files->count && series.count < GZ_TIME_POINTS_MAX; i++) {
 		struct numbered_file *file = &files->items[i];
 		const bool again = i > 0 && file->number == files->items[i - 1].number;
-		if (again || gz_particle_format_of(file->path) != format)
+		if (again || gz_particle_format_by_content(file->path) != format)
 			continue;
 		series.paths[series.count++] = file->path;
 		file->path = NULL;

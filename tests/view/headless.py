@@ -146,6 +146,27 @@ class Headless(unittest.TestCase):
                         plain.part(middle, 0, width, height))
         self.assertFalse(plain == drawn)
 
+    def test_atlas_of_many_regions_is_illustrated(self):
+        """300 labels: numbers of objects beyond 16 bits."""
+        edge = 29
+        voxels = bytearray(2 * edge**3)
+        for label in range(300):
+            x, y, z = (4 * (label // n % 7) + 1 for n in (1, 7, 49))
+            for k in range(27):
+                at = 2 * (((z + k // 9) * edge + y + k // 3 % 3) * edge + x + k % 3)
+                voxels[at : at + 2] = (label + 1).to_bytes(2, "little")
+        with open(self.path("many.nrrd"), "wb") as out:
+            out.write(b"NRRD0004\ntype: uint16\ndimension: 3\nsizes: 29 29 29\nendian: little\n"
+                      b"spacings: 1 1 1\nencoding: raw\n\n" + bytes(voxels))
+        with open(self.path("many.scene"), "w", encoding="utf-8") as out:
+            out.write("[object parts]\nlabels = many.nrrd\ntechnique = illustrate\n")
+        if "Embree" in self.render(scene=self.path("many.scene")).stderr:
+            self.skipTest("built without Embree")
+        self.good("--backend", "cpu", "--out", self.path("many.png"), scene=self.path("many.scene"))
+        picture = read_png(self.path("many.png"))
+        self.assertGreater(len({picture.at(x, y) for x in range(picture.width)
+                                for y in range(picture.height)}), 20)
+
     def compare(self, *how):
         coarse = (*how, "--gaze", "0.3,0.5", "--foveation.acuity_slope", "0.1")
         for name, more in (("sharp", ("--method", "standard")), ("foveated", ()),

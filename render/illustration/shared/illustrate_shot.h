@@ -13,8 +13,9 @@
 #include "render/picture/plane.h"
 #include "render/plan/plan.h"
 
-/** Most number of an object. Chosen: a scene has 32, an atlas some hundreds. */
-#define GZ_ILLUSTRATE_ID_MAX 65535
+/** Most number of an object. Lists are as long as the greatest number in a scene. Chosen: beyond
+ * that of the last of GZ_LABELS_MAX labels (gz_scene_label_id()). */
+#define GZ_ILLUSTRATE_ID_MAX 262143
 
 /** One picture to draw. All pointers are borrowed. */
 struct gz_illustrate_shot {
