@@ -1,7 +1,10 @@
 /*
  * Writes the features of all labelled recordings and of simulated viewers, for gaze_forest_fit.c.
  *
- * usage: gaze_features FOLDER    (GAZECAST_DATA names the folder of recordings)
+ * usage: gaze_features FOLDER [STEP]    (GAZECAST_DATA names the folder of recordings)
+ *
+ * With STEP, only every STEP-th observer of a film, and no copies or simulated viewers: little, for
+ * a test.
  *
  * FOLDER/features.f32: GZ_WHOLE_FEATURES floats a sample; the first half of them is of earlier
  * samples FOLDER/labels.i16: five numbers a sample: track, labels of both people (enum
@@ -32,6 +35,7 @@ struct output {
 	FILE *features, *labels, *tracks;
 	int track_count;
 	bool failed;
+	size_t few; /* every so many observers, without copies; 0: everything */
 };
 
 /* One recording at one rate. */
@@ -125,12 +129,14 @@ static void write_rates(struct output *out, const char *set, const char *kind, c
 	}
 	const double step_us =
 		(double)(recording->sample[1].host_ns - recording->sample[0].host_ns) * 1e-3;
-	for (size_t step = 1; step <= 8; step *= 2) {
+	for (size_t step = 1; step <= (out->few > 0 ? 1 : 8); step *= 2) {
 		const struct track track = { recording, second_label, step, 0 };
 		fprintf(out->tracks, "%d\t%s\t%s\t%s\t%.0f\t0\n", out->track_count, set, kind, name,
 			step_us * (double)step);
 		write_track(out, &track);
 	}
+	if (out->few > 0)
+		return;
 	const struct track track = { recording, second_label, 1, 0 };
 	lose_samples(&random, recording);
 	fprintf(out->tracks, "%d\t%s\t%s\t%s\t%.0f\t1\n", out->track_count, set, kind, name,
@@ -163,7 +169,7 @@ static bool write_gazecom(struct output *out, const char *data)
 	for (size_t film = 0; film < GZ_GAZECOM_FILMS; film++) {
 		struct gz_gazecom gazecom;
 		const bool good = gz_gazecom_read(data, film, &gazecom);
-		for (size_t i = 0; good && i < gazecom.count; i++)
+		for (size_t i = 0; good && i<gazecom.count; i += out->few> 0 ? out->few : 1)
 			write_rates(out, "gazecom", gz_gazecom_films[film], "-",
 				    &gazecom.recording[i], NULL);
 		gz_gazecom_free(&gazecom);
@@ -277,21 +283,23 @@ int main(int argc, char **argv)
 		printf("GAZECAST_DATA is not set\n");
 		return SKIPPED;
 	}
-	if (argc != 2) {
-		fprintf(stderr, "usage: gaze_features FOLDER\n");
+	const long few = argc == 3 ? strtol(argv[2], NULL, 10) : 0;
+	if (argc < 2 || argc > 3 || (argc == 3 && few < 1)) {
+		fprintf(stderr, "usage: gaze_features FOLDER [STEP]\n");
 		return 2;
 	}
 	struct output out = {
 		.features = open_in(argv[1], "features.f32"),
 		.labels = open_in(argv[1], "labels.i16"),
 		.tracks = open_in(argv[1], "tracks.tsv"),
+		.few = (size_t)few,
 	};
 	bool good = out.features && out.labels && out.tracks && write_names(argv[1]);
 	if (good && !(write_andersson(&out, data) && write_gazecom(&out, data))) {
 		fprintf(stderr, "%s: a labelled recording is missing or damaged\n", data);
 		good = false;
 	}
-	good = good && write_simulated(&out);
+	good = good && (out.few > 0 || write_simulated(&out));
 	good = close_written(out.features) && good;
 	good = close_written(out.labels) && good;
 	good = close_written(out.tracks) && good;

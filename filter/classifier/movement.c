@@ -55,6 +55,9 @@ static const double TIME_MAX_MS = 1000;
 static const double NOISE_S = 1;
 static const double MEAN_S[GZ_MOVEMENT_MEANS] = { 2, 10 };
 
+/* Time constants of the flows, s. Chosen: a pursuit and its catch-up saccades, and several. */
+static const double FLOW_S[GZ_MOVEMENT_FLOWS] = { 0.5, 2 };
+
 /* At the start of a recording the means are over what there is, but at least this time. Chosen. */
 static const double MEAN_LEAST_S = 0.5;
 
@@ -165,6 +168,14 @@ const char *const gz_movement_feature_names[GZ_MOVEMENT_FEATURES] = {
 	"beyond_x",
 	"beyond_y",
 	"valid",
+	/* How fast the slow movement has been on the whole, deg/s, and the newest burst against the
+	 * slow movement after it, before it and lately: pursuit goes on where it went, and the
+	 * saccades in it go the same way. */
+	"flow_500",
+	"flow_2000",
+	"burst_slope",
+	"burst_last",
+	"burst_flow",
 };
 
 static struct gz_movement_entry *entry_at(struct gz_movement *state, uint64_t index)
@@ -441,6 +452,24 @@ static void follow_stretch(struct gz_movement *state, int64_t now_us, bool fast)
 	stretch->lasted_ms = (double)(now_us - entry_at(state, since)->time_us) * 1e-3;
 }
 
+/* Follow where slow movement goes, if this sample and the one before were measured. */
+static void follow_flows(struct gz_movement *state, double step_s)
+{
+	if (state->count < 2 || !state->stretch.any)
+		return;
+	const struct gz_movement_entry *now = entry_at(state, state->count - 1);
+	const struct gz_movement_entry *before = entry_at(state, state->count - 2);
+	if (!now->valid || !before->valid)
+		return;
+	for (int k = 0; k < GZ_MOVEMENT_FLOWS; k++)
+		for (int i = 0; i < 2; i++) {
+			const double way_deg =
+				DEG_PER_UNIT * (double)(now->place[i] - before->place[i]);
+			double *slow = &state->flow[k].slow_deg_s[i];
+			*slow += (way_deg - *slow * step_s) / (FLOW_S[k] + step_s);
+		}
+}
+
 static void follow_means(struct gz_movement *state, bool lost, bool burst_begins, double step_s)
 {
 	double elapsed_s = (double)entry_at(state, state->count - 1)->time_us * 1e-6;
@@ -583,6 +612,18 @@ static void put_stretch(const struct gz_movement *state, struct feature_row *row
 	}
 }
 
+static void put_flows(const struct gz_movement *state, struct feature_row *row)
+{
+	const struct gz_movement_burst *burst = &state->burst;
+	const double *longest = state->flow[GZ_MOVEMENT_FLOWS - 1].slow_deg_s;
+	const double jump[2] = { burst->to[0] - burst->from[0], burst->to[1] - burst->from[1] };
+	for (int k = 0; k < GZ_MOVEMENT_FLOWS; k++)
+		put(row, length2(state->flow[k].slow_deg_s));
+	put(row, cosine_of(jump, state->stretch.slope, 1));
+	put(row, cosine_of(jump, state->last_stretch.slope, 1));
+	put(row, cosine_of(jump, longest, 1));
+}
+
 /* How far beyond the display's edge, -3 to 3 degrees. */
 static void put_edges(const struct gz_display *display, const double here[2],
 		      struct feature_row *row)
@@ -605,6 +646,7 @@ static void put_features(struct gz_movement *state, const struct gz_display *dis
 	put_stretch(state, &row);
 	put_edges(display, places->now, &row);
 	put(&row, entry_at(state, state->count - 1)->valid ? 1 : 0);
+	put_flows(state, &row);
 }
 
 bool gz_movement_step(struct gz_movement *state, const struct gz_display *display,
@@ -633,6 +675,7 @@ bool gz_movement_step(struct gz_movement *state, const struct gz_display *displa
 		follow_noise(state, speed_deg_s, step_s);
 	follow_stretch(state, entry->time_us, fast || !input->valid);
 	follow_means(state, !input->valid, begins, step_s);
+	follow_flows(state, step_s);
 	if (out_features)
 		put_features(state, display, &places, speed_deg_s, out_features);
 	return true;

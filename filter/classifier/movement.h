@@ -26,7 +26,7 @@
 #define GZ_MOVEMENT_LOOKS 12
 
 /** Number of features of a sample. */
-#define GZ_MOVEMENT_FEATURES 96
+#define GZ_MOVEMENT_FEATURES 101
 
 /** Names of the features, in their order, with the unit where there is one. */
 extern const char *const gz_movement_feature_names[GZ_MOVEMENT_FEATURES];
@@ -77,6 +77,15 @@ struct gz_movement_mean {
 /** Running means with two time constants. */
 enum { GZ_MOVEMENT_MEANS = 2 };
 
+/** Where slow movement has been going lately, across the fast ones: its mean velocity. What goes to
+ *  and fro is nothing. */
+struct gz_movement_flow {
+	double slow_deg_s[2];
+};
+
+/** Flows with two time constants. */
+enum { GZ_MOVEMENT_FLOWS = 2 };
+
 /** State. Zero-initialised is the start state. Plain data. */
 struct gz_movement {
 	struct gz_movement_entry ring[GZ_MOVEMENT_RING];
@@ -94,6 +103,7 @@ struct gz_movement {
 	struct gz_movement_stretch stretch;
 	struct gz_movement_stretch last_stretch; /**< the one before the newest burst */
 	struct gz_movement_mean mean[GZ_MOVEMENT_MEANS];
+	struct gz_movement_flow flow[GZ_MOVEMENT_FLOWS];
 };
 
 /** One sample. */

@@ -99,6 +99,8 @@ static void steady_movement_gives_the_same_features_at_any_rate(void **state)
 		CHECK_BETWEEN(feature_of(&feed, "slope"), 9.8, 10.2);
 		CHECK_BETWEEN(feature_of(&feed, "residual"), 0, 0.02);
 		CHECK_BETWEEN(feature_of(&feed, "noise"), 9.5, 10.5);
+		CHECK_BETWEEN(feature_of(&feed, "flow_500"), 9.6, 10.0); /* 10 (1 - exp(-4)) */
+		CHECK_BETWEEN(feature_of(&feed, "flow_2000"), 6.1, 6.5); /* 10 (1 - exp(-1)) */
 		CHECK_BETWEEN(feature_of(&feed, "since_fast_ms"), 1000, 1000);
 	}
 }
@@ -131,6 +133,47 @@ static void a_burst_is_measured(void **state)
 		CHECK_BETWEEN(feature_of(&feed, "since_fast_ms"), 470, 482);
 		CHECK_BETWEEN(feature_of(&feed, "stretch_ms"), 440, 460);
 	}
+}
+
+/* 6 degrees a second to the right, and after a second 2 degrees at once in direction @p jump. */
+static void feed_pursuit(struct feed *feed, double jump)
+{
+	feed_open(feed, 500);
+	while (feed->time_s < 1.5)
+		feed_point(feed,
+			   6 * (feed->time_s - 1) +
+				   2 * jump * fmax(0, fmin(1, (feed->time_s - 1) / 0.02)),
+			   0, true);
+}
+
+static void slow_movement_is_followed_across_fast_ones(void **state)
+{
+	(void)state;
+	static struct feed feed;
+	feed_pursuit(&feed, 1); /* a saccade that catches up */
+	CHECK_BETWEEN(feature_of(&feed, "flow_500"), 5.3, 6);
+	CHECK_BETWEEN(feature_of(&feed, "flow_2000"), 2.9, 3.3); /* 6 (1 - exp(-1.5 / 2)) */
+	CHECK_BETWEEN(feature_of(&feed, "burst_slope"), 0.9, 1);
+	CHECK_BETWEEN(feature_of(&feed, "burst_last"), 0.9, 1);
+	CHECK_BETWEEN(feature_of(&feed, "burst_flow"), 0.8, 1);
+	feed_pursuit(&feed, -1);
+	CHECK_BETWEEN(feature_of(&feed, "flow_500"), 5.3, 6);
+	CHECK_BETWEEN(feature_of(&feed, "burst_slope"), -1, -0.9);
+	CHECK_BETWEEN(feature_of(&feed, "burst_last"), -1, -0.9);
+	CHECK_BETWEEN(feature_of(&feed, "burst_flow"), -1, -0.8);
+}
+
+/* Five degrees a second for 0.1 s, and back. */
+static void what_goes_to_and_fro_goes_nowhere(void **state)
+{
+	(void)state;
+	static struct feed feed;
+	feed_open(&feed, 500);
+	while (feed.time_s < 2)
+		feed_point(&feed, 5 * fabs(fmod(feed.time_s, 0.2) - 0.1), 0, true);
+	CHECK_BETWEEN(feature_of(&feed, "flow_500"), 0, 0.6);
+	CHECK_BETWEEN(feature_of(&feed, "flow_2000"), 0, 0.2);
+	CHECK_BETWEEN(feature_of(&feed, "speed_0"), 4.9, 5.1);
 }
 
 static void a_loss_is_measured_and_holds_the_place(void **state)
@@ -365,6 +408,8 @@ TEST_SUITE(classifier)
 		cmocka_unit_test(steady_movement_gives_the_same_features_at_any_rate),
 		cmocka_unit_test(a_resting_eye_has_no_movement),
 		cmocka_unit_test(a_burst_is_measured),
+		cmocka_unit_test(slow_movement_is_followed_across_fast_ones),
+		cmocka_unit_test(what_goes_to_and_fro_goes_nowhere),
 		cmocka_unit_test(a_loss_is_measured_and_holds_the_place),
 		cmocka_unit_test(any_samples_give_finite_features_and_the_same_again),
 		cmocka_unit_test(samples_without_features_count_for_the_next_ones),

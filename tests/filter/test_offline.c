@@ -344,16 +344,17 @@ static void losses_are_noise_unless_they_are_short(void **state)
  */
 
 /* What is compared, and the least kappa (mean of both people) in pictures, dots and videos: that on
- * recordings that were not learned from (docs/gaze-pipeline.md). 0: too rare there. */
+ * recordings that were not learned from (docs/gaze-pipeline.md); for blinks in videos, 0.979 there,
+ * what the installed forest reaches. 0: too rare there. */
 static const struct {
 	enum gz_offline_label label;
 	enum gz_human_label human;
 	double least[GZ_LABELLED_STIMULI];
 } AGREEMENTS[] = {
-	{ GZ_OFFLINE_SACCADE, GZ_HUMAN_SACCADE, { 0.880, 0.736, 0.809 } },
-	{ GZ_OFFLINE_FIXATION, GZ_HUMAN_FIXATION, { 0.846, 0.917, 0.540 } },
-	{ GZ_OFFLINE_OSCILLATION, GZ_HUMAN_GLISSADE, { 0.706, 0.292, 0.503 } },
-	{ GZ_OFFLINE_BLINK, GZ_HUMAN_BLINK, { 0.873, 0, 0.944 } },
+	{ GZ_OFFLINE_SACCADE, GZ_HUMAN_SACCADE, { 0.874, 0.719, 0.800 } },
+	{ GZ_OFFLINE_FIXATION, GZ_HUMAN_FIXATION, { 0.847, 0.923, 0.576 } },
+	{ GZ_OFFLINE_OSCILLATION, GZ_HUMAN_GLISSADE, { 0.697, 0.321, 0.445 } },
+	{ GZ_OFFLINE_BLINK, GZ_HUMAN_BLINK, { 0.839, 0, 0.974 } },
 };
 enum { AGREEMENTS_COUNT = sizeof AGREEMENTS / sizeof AGREEMENTS[0] };
 
@@ -407,10 +408,10 @@ static const struct {
 	enum gz_offline_label label[2];
 	double least;
 } FILM_LABELS[] = {
-	{ GZ_HUMAN_FIXATION, { GZ_OFFLINE_FIXATION, GZ_OFFLINE_FIXATION }, 0.930 },
-	{ GZ_HUMAN_SACCADE, { GZ_OFFLINE_SACCADE, GZ_OFFLINE_OSCILLATION }, 0.882 },
-	{ GZ_HUMAN_PURSUIT, { GZ_OFFLINE_PURSUIT, GZ_OFFLINE_PURSUIT }, 0.673 },
-	{ GZ_HUMAN_BLINK, { GZ_OFFLINE_BLINK, GZ_OFFLINE_LOST }, 0.757 },
+	{ GZ_HUMAN_FIXATION, { GZ_OFFLINE_FIXATION, GZ_OFFLINE_FIXATION }, 0.932 },
+	{ GZ_HUMAN_SACCADE, { GZ_OFFLINE_SACCADE, GZ_OFFLINE_OSCILLATION }, 0.877 },
+	{ GZ_HUMAN_PURSUIT, { GZ_OFFLINE_PURSUIT, GZ_OFFLINE_PURSUIT }, 0.685 },
+	{ GZ_HUMAN_BLINK, { GZ_OFFLINE_BLINK, GZ_OFFLINE_LOST }, 0.772 },
 };
 enum { FILM_LABELS_COUNT = sizeof FILM_LABELS / sizeof FILM_LABELS[0] };
 

@@ -21,7 +21,7 @@
 
 enum { SKIPPED = 77, LIST_MAX = 4096 };
 
-/* Agreement on recordings that were not learned from: one film and one group of people were kept
+/* Agreement on recordings that were not learned from: two films and a third of the people were kept
  * out at a time (docs/gaze-pipeline.md; bench/probes/gaze_forest_fit.c). The presets, which were
  * learned from all of these recordings, must not be worse on them. */
 enum { AT_ONCE, CERTAIN, LABEL_KINDS };
@@ -46,16 +46,16 @@ struct stimulus {
 };
 
 static const struct stimulus STIMULI[GZ_LABELLED_STIMULI] = {
-	[GZ_LABELLED_IMAGES] = { "img", { { 0.825, 0.664, 0 }, { 0.902, 0.788, 0.732 } } },
-	[GZ_LABELLED_DOTS] = { "dots", { { 0.651, 0.560, 0 }, { 0.745, 0.592, 0.550 } } },
-	[GZ_LABELLED_VIDEOS] = { "video", { { 0.768, 0.425, 0 }, { 0.861, 0.388, 0.685 } } },
+	[GZ_LABELLED_IMAGES] = { "img", { { 0.805, 0.637, 0 }, { 0.882, 0.787, 0.713 } } },
+	[GZ_LABELLED_DOTS] = { "dots", { { 0.650, 0.562, 0 }, { 0.721, 0.589, 0.541 } } },
+	[GZ_LABELLED_VIDEOS] = { "video", { { 0.758, 0.333, 0 }, { 0.849, 0.283, 0.685 } } },
 };
 
 /* What a sample of GazeCom can be, and the required F1: 2 both / (ours + theirs). */
 enum { CLASSES = 4 };
 static const char *const CLASS_NAMES[CLASSES] = { "fixation", "saccade", "pursuit", "noise" };
-static const double FILM_F1[LABEL_KINDS][CLASSES] = { { 0.917, 0.848, 0.550, 0.699 },
-						      { 0.919, 0.860, 0.560, 0.694 } };
+static const double FILM_F1[LABEL_KINDS][CLASSES] = { { 0.916, 0.841, 0.562, 0.713 },
+						      { 0.919, 0.853, 0.573, 0.697 } };
 
 /* What never occurs has a kappa of about 0. */
 static const double ROUNDING = 1e-9;
@@ -65,11 +65,16 @@ static const double NOISE_MOST = 0.20, DISTANCE_MOST = 1.00, LAG_MOST = 2, LANDI
 
 /* The requirements by the measures of bench/filter/precision.h on each stimulus and each film:
  * noise, relative to the raw signal, in the median window; mean lag at the onset of saccades,
- * samples; lag in pursuits, ms; overshoot, degrees. The lags are those of a mean of 100 ms. */
+ * samples; lag in pursuits, ms; overshoot, degrees. The lags are those of a mean of 100 ms, but in
+ * pictures, where the labels call most of what people call pursuit fixation. */
 struct precision_limits {
 	double step_whole, step_inner, spread_inner, onset_samples, pursuit_ms, overshoot_deg;
 };
-static const struct precision_limits STIMULUS_LIMITS = { 0.20, 0.18, 0.30, 1, 3, 0.3 };
+static const struct precision_limits STIMULUS_LIMITS[GZ_LABELLED_STIMULI] = {
+	[GZ_LABELLED_IMAGES] = { 0.20, 0.18, 0.30, 1, 5, 0.3 },
+	[GZ_LABELLED_DOTS] = { 0.20, 0.18, 0.30, 1, 3, 0.3 },
+	[GZ_LABELLED_VIDEOS] = { 0.20, 0.18, 0.30, 1, 3, 0.3 },
+};
 static const struct precision_limits FILM_LIMITS = { 0.37, 0.34, 0.36, 1, 20, 0.3 };
 
 /* Values whose median is needed. */
@@ -516,7 +521,7 @@ TEST_SUITE(recordings)
 			return SKIPPED;
 		print_measures(&STIMULI[i], &m);
 		failures += !good_enough(&STIMULI[i], &m);
-		failures += !precise_enough(STIMULI[i].name, &tracks, &STIMULUS_LIMITS);
+		failures += !precise_enough(STIMULI[i].name, &tracks, &STIMULUS_LIMITS[i]);
 		tracks_free(&tracks);
 	}
 	static struct gz_agreement film[LABEL_KINDS][CLASSES];
