@@ -153,7 +153,7 @@ static void lids_of_simulated_viewers_are_seen(void **state)
 			"%6g Hz: kappa of blinks %.3f without the guard, %.3f with it; called "
 			"saccade in them %d and %d samples\n",
 			RATES_HZ[i], off.kappa, on.kappa, off.saccades, on.saccades);
-		assert_true(on.kappa > off.kappa + 0.02);
+		assert_true(on.kappa > off.kappa + 0.01);
 		assert_true(on.saccades <= 0.7 * off.saccades);
 	}
 }
