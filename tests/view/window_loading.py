@@ -123,9 +123,9 @@ class WindowLoading(WindowCase):
         self.until(self.welcomes, "welcome")
         for key in ("1", "r", "p", "l", "c", "i", "Left", "space", "F5", "f", "f", "p"):
             self.tool("key", key)
-        self.move(200, 150)
+        self.move(4, SIZE[1] - 8)  # beside the panel, which offers scenes
         self.tool("mousedown", 1)
-        self.move(220, 170)
+        self.move(6, SIZE[1] - 20)
         self.tool("mouseup", 1)
         self.tool("click", 4)
         self.rest()
