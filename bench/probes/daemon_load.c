@@ -351,10 +351,13 @@ struct sleepers {
 static void *sleep_on_number(void *user)
 {
 	struct sleepers *sleepers = user;
-	while (!atomic_load(&sleepers->quit))
-		syscall(SYS_futex, &sleepers->number, FUTEX_WAIT, atomic_load(&sleepers->number),
-			NULL, NULL, 0);
-	return NULL;
+	for (;;) {
+		/* Before the look at quit: what is told after it changes this number. */
+		const uint32_t number = atomic_load(&sleepers->number);
+		if (atomic_load(&sleepers->quit))
+			return NULL;
+		syscall(SYS_futex, &sleepers->number, FUTEX_WAIT, number, NULL, NULL, 0);
+	}
 }
 
 static void wake_sleepers(struct sleepers *sleepers)

@@ -169,7 +169,8 @@ static bool write_gazecom(struct output *out, const char *data)
 	for (size_t film = 0; film < GZ_GAZECOM_FILMS; film++) {
 		struct gz_gazecom gazecom;
 		const bool good = gz_gazecom_read(data, film, &gazecom);
-		for (size_t i = 0; good && i<gazecom.count; i += out->few> 0 ? out->few : 1)
+		const size_t step = out->few > 0 ? out->few : 1;
+		for (size_t i = 0; good && i < gazecom.count; i += step)
 			write_rates(out, "gazecom", gz_gazecom_films[film], "-",
 				    &gazecom.recording[i], NULL);
 		gz_gazecom_free(&gazecom);
