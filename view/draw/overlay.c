@@ -87,6 +87,8 @@ static void find_span(struct gz_plan_cells *cells, const struct gz_plan *plan,
 	cells->least = INFINITY;
 	cells->most = 0;
 	for (size_t i = 0; i < plan->tile_count; i++) {
+		if (plan->tiles[i].replaced)
+			continue;
 		const double value = gz_plan_cells_value(plan, &plan->tiles[i], overlay);
 		cells->least = fmin(cells->least, value);
 		cells->most = fmax(cells->most, value);
