@@ -43,8 +43,7 @@ static const struct gz_option volume_options[] = {
 	  .preset = "little", .help = "byte order; raw files" },
 	{ "volume.spacing", GZ_OPTION_DOUBLE, AT(spacing), 0, 1e9, .count = 3, .preset = "0 0 0",
 	  .help = "voxel spacing x y z, mm; raw files and procedural volumes; 0: not known, and 1 "
-		  "is "
-		  "assumed" },
+		  "is assumed" },
 	{ "volume.channels", GZ_OPTION_INT, AT(channels), 1, 4, .preset = "1",
 	  .help = "numbers of a voxel: 1 is its value, 3 red, green and blue, 4 alpha too; raw "
 		  "files" },
