@@ -206,6 +206,8 @@ static void style_raised(struct gz_frame_maker *maker)
 	struct gz_object objects[GZ_SCENE_LISTED_MAX];
 	if (raised->id == 0)
 		return;
+	/* A recorded number may be that of no volume: then nothing stands out. */
+	maker->raised_transfer = maker->scene.transfer;
 	const size_t count = gz_scene_list_objects(&maker->scene, objects, GZ_SCENE_LISTED_MAX);
 	for (size_t i = 0; i < count; i++) {
 		if (objects[i].id != raised->id)
