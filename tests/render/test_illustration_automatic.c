@@ -109,6 +109,21 @@ static void settings_move_at_a_limited_speed_and_settle(void **state)
 	assert_true(back.now_ns == woken.now_ns);
 }
 
+/* A frame that shows another view says that more are to follow, and changes nothing itself. */
+static void another_view_is_noticed_before_time_passes(void **state)
+{
+	(void)state;
+	const struct gz_illustration_look look = automatic_look();
+	const struct gz_illustration_automatic still = steps(begun(&look), &look, &medium, 200);
+	struct gz_shading_measures flat = medium;
+	flat.tone_spread = 0;
+	const struct gz_illustration_automatic noticed =
+		gz_illustration_automatic_step(still, &look, &flat, still.now_ns);
+	assert_false(still.moving);
+	assert_true(noticed.moving);
+	assert_true(gz_illustration_change_same(&noticed.change, &still.change));
+}
+
 /* A picture that answers to the setting: the more amplitude, the wider its tones. */
 static void a_picture_that_answers_settles_too(void **state)
 {
@@ -243,6 +258,7 @@ TEST_SUITE(illustration_automatic)
 		cmocka_unit_test(a_medium_picture_changes_nothing),
 		cmocka_unit_test(each_setting_follows_its_measure),
 		cmocka_unit_test(settings_move_at_a_limited_speed_and_settle),
+		cmocka_unit_test(another_view_is_noticed_before_time_passes),
 		cmocka_unit_test(a_picture_that_answers_settles_too),
 		cmocka_unit_test(nothing_jumps_by_whole_steps_and_all_stays_in_range),
 		cmocka_unit_test(looks_that_do_not_ask_stay_as_they_are),

@@ -934,6 +934,20 @@ static void follow_measures(struct gz_frame_maker *maker, const struct gz_frame_
 	gz_illustration_adapt(&maker->automatic.change, &maker->rays.illustration);
 }
 
+/* Note what a frame shows, and whether settings go on by it: frames then follow, even if nothing
+ * else moves. No time has passed, so nothing changes yet. Recorded changes are not followed. */
+static void take_measures(struct gz_frame_maker *maker, const struct gz_frame_request *request,
+			  const struct gz_shading_measures *measures)
+{
+	maker->measured = measures != NULL;
+	if (measures)
+		maker->measures = *measures;
+	if (measures && maker->automatic.started)
+		maker->automatic = gz_illustration_automatic_step(
+			maker->automatic, &request->settings->rays.illustration, measures,
+			maker->automatic.now_ns);
+}
+
 /* A request for the picture of a frame; after follow_measures(). */
 static struct gz_picture_request picture_of_frame(const struct gz_frame_maker *maker,
 						  const struct gz_frame_request *request)
@@ -969,9 +983,7 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 		r = gz_picture_make(maker->pictures, &picture, out_image, &cost);
 	if (r != GZ_OK)
 		return r;
-	maker->measured = cost.stats.measures != NULL;
-	if (maker->measured)
-		maker->measures = *cost.stats.measures;
+	take_measures(maker, request, cost.stats.measures);
 	record->total_ms = cost.total_ms;
 	record->prepare_ms = cost.stats.prepare_within_ms;
 	record->plan_ms = cost.plan_ms;
