@@ -103,7 +103,7 @@ static bool read_strokes(const float *floats, struct gz_hatch_strokes *strokes)
 	float before = 0;
 	for (size_t i = 0; i < strokes->stroke_count; i++, floats += STROKE_FLOATS) {
 		if (!gz_kept_whole(floats[0], 2, GZ_KEPT_WHOLE_MAX, &count) ||
-		    count > strokes->node_count - first || floats[1] < before)
+		    count > strokes->node_count - first || !(floats[1] >= before))
 			return false;
 		before = floats[1];
 		strokes->strokes[i] =

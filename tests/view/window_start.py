@@ -4,6 +4,7 @@ them.
 window_start.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
+import contextlib
 import os
 import sys
 import time
@@ -136,11 +137,13 @@ class Start(WindowCase):
         """Command lines of the programs that the window has started."""
         lines = []
         for task in os.listdir("/proc/%d/task" % self.viewer.pid):
-            with open("/proc/%d/task/%s/children" % (self.viewer.pid, task),
-                      encoding="ascii") as children:
-                for child in children.read().split():
-                    with open("/proc/%s/cmdline" % child, encoding="utf-8") as line:
-                        lines.append(line.read().split("\0")[:-1])
+            # Threads and children may end meanwhile.
+            with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+                with open("/proc/%d/task/%s/children" % (self.viewer.pid, task),
+                          encoding="ascii") as children:
+                    for child in children.read().split():
+                        with open("/proc/%s/cmdline" % child, encoding="utf-8") as line:
+                            lines.append(line.read().split("\0")[:-1])
         return lines
 
     def told_picture(self):
