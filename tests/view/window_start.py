@@ -116,19 +116,19 @@ class Start(WindowCase):
         self.assertEqual(len(places), SAMPLES, "the cross is seldom seen")
         return places
 
+    def until_looked(self, there, what):
+        """Wait until the gaze is there most of the time."""
+        self.wait_for(lambda: sum(map(there, self.gaze_places())) > 0.8 * SAMPLES, what)
+
     def test_simulated_viewer_looks_at_the_object_and_follows_it(self):
         self.start("--cross", "--backend", "cpu", scene=self.own_scene())
         self.find("simulated viewer")
         picture = self.wait_for(self.told_picture, "a picture for the viewer")
-        time.sleep(1)  # until the daemon is there
-        places = self.gaze_places()
-        self.assertGreater(sum(x < SIZE[0] // 2 for x in places), 0.8 * SAMPLES, places)
+        self.until_looked(lambda x: x < SIZE[0] // 2, "a viewer who looks left")
         before = os.stat(picture).st_mtime_ns
         self.tool("key", "F1")
         self.wait_for(lambda: os.stat(picture).st_mtime_ns != before, "another picture")
-        time.sleep(2)  # until it is read, and the viewer turns to it
-        places = self.gaze_places()
-        self.assertGreater(sum(x > SIZE[0] // 2 for x in places), 0.8 * SAMPLES, places)
+        self.until_looked(lambda x: x > SIZE[0] // 2, "a viewer who looks right")
         said = self.end()
         self.assertNotIn("has ended", said)
         self.assertFalse(os.path.exists(picture), "its picture is left behind")
