@@ -210,9 +210,9 @@ static bool read_whole(int fd, unsigned char *bytes, size_t size)
 /* What is wanted of a file. */
 struct cache_wish {
 	const struct gz_mesh_key *key;
-	const struct gz_mesh_cache_array *arrays; /* filled; NULL: whole */
+	const struct gz_mesh_cache_array *arrays; /* filled, unless there is a whole */
 	size_t count;
-	struct gz_mesh_cache_array *whole; /* made, as long as the file is */
+	struct gz_mesh_cache_array *whole; /* made, as long as the file is; NULL: arrays */
 	size_t floats_most;                /* of whole */
 	const struct gz_log *log;
 };
@@ -220,7 +220,7 @@ struct cache_wish {
 /* How many floats a file of this size is to have. */
 static size_t floats_wanted(const struct cache_wish *wish, uint64_t size)
 {
-	if (wish->arrays)
+	if (!wish->whole)
 		return count_floats(wish->arrays, wish->count);
 	const uint64_t floats = size > HEAD_SIZE ? (size - HEAD_SIZE) / sizeof(float) : 0;
 	return floats < wish->floats_most ? (size_t)floats : wish->floats_most;
@@ -230,7 +230,7 @@ static size_t floats_wanted(const struct cache_wish *wish, uint64_t size)
 static enum gz_result parse_wish(const struct cache_wish *wish, const char *path,
 				 const unsigned char *bytes, size_t size, size_t floats)
 {
-	if (wish->arrays)
+	if (!wish->whole)
 		return gz_mesh_cache_parse(path, bytes, size, wish->key, wish->arrays, wish->count,
 					   wish->log);
 	const struct gz_mesh_cache_array whole = { malloc((floats + 1) * sizeof(float)), floats };

@@ -314,7 +314,7 @@ static __attribute__((noinline)) struct meeting read_field(const struct gz_surfa
 	const struct gz_surface_field *field = &cast->field;
 	const struct ways way = load_ways(&packet->hit.ray, lanes.first);
 	const vf distance = vf_load(packet->hit.ray.tfar + lanes.first);
-	struct meeting at;
+	struct meeting at = { .triangle = vi_set(0) }; /* a field has none */
 	vf places[3], length2 = vf_set(1e-30F);
 	for (int axis = 0; axis < 3; axis++) {
 		at.place[axis] = vf_fma(distance, way.direction[axis], way.origin[axis]);
