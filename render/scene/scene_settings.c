@@ -30,7 +30,8 @@ static const struct gz_option volume_options[] = {
 		  ".gzb, raw data, or particles (.particles, .bgeo, .vtk, .ply, .xyz); searched "
 		  "beside the scene, then under $GAZECAST_DATA" },
 	{ "volume.source", GZ_OPTION_STRING, AT(volume_source), .max = GZ_SCENE_SOURCE_SIZE,
-	  .preset = "", .help = "where the file is to be had, for those who lack it" },
+	  .preset = "",
+	  .help = "where to get the scene's data: a sentence that is shown if they are missing" },
 	{ "volume.series", GZ_OPTION_STRING, AT(volume_series), .max = GZ_SERIES_SIZE, .preset = "",
 	  .help = "UID of the series of a DICOM folder; without it there must be only one" },
 	{ "volume.procedural", GZ_OPTION_CHOICE, AT(volume_procedural), .choices = procedural_names,
