@@ -50,7 +50,7 @@ open_scene() {
 # A scene of data that one must fetch says where they are to be had.
 ask_scene() {
 	local scene=/usr/share/gazecast/scenes/$1.scene said
-	! said=$(as_visitor gazeview --headless --scene "$scene" --out "$1.png" 2>&1) ||
+	! said=$(as_visitor gazeview --headless --scene "$scene" --out "${1##*/}.png" 2>&1) ||
 		fail "$1.scene opens without its data"
 	grep -q https:// <<<"$said" || fail "$1.scene does not say where its data are: $said"
 }
