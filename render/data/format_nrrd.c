@@ -644,7 +644,7 @@ static int print_nrrd_header(const struct gz_volume *volume, const struct nrrd_f
 	snprintf(directions, sizeof directions,
 		 "space directions: %s(%.17g,0,0) (0,%.17g,0) (0,0,%.17g)\n",
 		 axes[channels].direction, s[0], s[1], s[2]);
-	/* What is not known is not stated. */
+	/* What is not known is not stated, except that directions have some length. */
 	const bool placed = volume->oriented || !volume->spacing_assumed;
 	return snprintf(out, size,
 			"NRRD0005\ntype: %s\ndimension: %s\n%ssizes: %s%d %d %d\n%s%s"
