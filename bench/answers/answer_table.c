@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/order.h"
 #include "base/text.h"
 
 #define GZ_LOG_MODULE "answers"
@@ -218,18 +219,12 @@ enum gz_result gz_answer_table_add(struct gz_answer_table *table, const char *pa
 	return result;
 }
 
-static int compare_times(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 double gz_answer_group_median_s(struct gz_answer_group *group)
 {
 	const size_t count = group->time_count;
 	if (count == 0)
 		return NAN;
-	qsort(group->times_s, count, sizeof *group->times_s, compare_times);
+	qsort(group->times_s, count, sizeof *group->times_s, gz_compare_doubles);
 	return (group->times_s[(count - 1) / 2] + group->times_s[count / 2]) / 2;
 }
 

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "base/vector.h"
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
@@ -383,16 +384,10 @@ static void fit_squares(const struct sample_set *set, int count, double out[TERM
 		out[j] = b[j] / scale[j];
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 /* The number below which a share of them lies; sorts them. */
 static double quantile(double *numbers, size_t count, double share)
 {
-	qsort(numbers, count, sizeof *numbers, compare_numbers);
+	qsort(numbers, count, sizeof *numbers, gz_compare_doubles);
 	return count ? numbers[(size_t)(share * (double)(count - 1))] : NAN;
 }
 

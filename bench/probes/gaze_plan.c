@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "bench/filter/track.h"
 #include "filter/angle.h"
 #include "filter/pipeline.h"
@@ -223,12 +224,6 @@ static void measure_track(const struct gz_gaze_track *track,
 
 /* ---- the table ---- */
 
-static int by_size(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 /* Print median, mean and 95 % of one number of all outcomes. */
 static void print_spread(const struct outcomes *outcomes, size_t offset)
 {
@@ -240,7 +235,7 @@ static void print_spread(const struct outcomes *outcomes, size_t offset)
 			continue;
 		sum += value[count++];
 	}
-	qsort(value, count, sizeof *value, by_size);
+	qsort(value, count, sizeof *value, gz_compare_doubles);
 	if (count > 0)
 		printf(" | %.2f %.2f %.2f", value[count / 2], sum / (double)count,
 		       value[count * 95 / 100]);

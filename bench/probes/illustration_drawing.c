@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/order.h"
 #include "base/text.h"
 #include "base/vector.h"
 #include "base/workers.h"
@@ -199,16 +200,10 @@ static enum gz_result make_view(struct drawing_state *state, const struct drawin
 	return result;
 }
 
-static int rising(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 /* The median and the least of the times of all runs. */
 static void print_times(const char *what, double times_ms[RUNS])
 {
-	qsort(times_ms, RUNS, sizeof *times_ms, rising);
+	qsort(times_ms, RUNS, sizeof *times_ms, gz_compare_doubles);
 	printf("%s best_ms %.2f median_ms %.2f\n", what, times_ms[0], times_ms[RUNS / 2]);
 }
 

@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/option.h"
+#include "base/order.h"
 #include "base/sizes.h"
 #include "render/illustration/cpu/illustrate_caster.h"
 #include "render/illustration/shading_template.h"
@@ -127,12 +128,6 @@ static enum gz_result set_up_stage(const struct picture_request *request, const 
 	return result;
 }
 
-static int rising(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static enum gz_result draw_runs(const struct picture_request *request, struct picture_stage *stage)
 {
 	const struct gz_illustrate_shot shot = {
@@ -155,7 +150,7 @@ static enum gz_result draw_runs(const struct picture_request *request, struct pi
 	}
 	if (result != GZ_OK)
 		return result;
-	qsort(took_ms, (size_t)request->runs, sizeof took_ms[0], rising);
+	qsort(took_ms, (size_t)request->runs, sizeof took_ms[0], gz_compare_doubles);
 	printf("%dx%d, %llu rays: best_ms %.2f median_ms %.2f, last: cast_ms %.2f rest_ms %.2f\n",
 	       request->size[0], request->size[1], (unsigned long long)stats.rays, took_ms[0],
 	       took_ms[request->runs / 2], stats.cast_ms, stats.reconstruct_ms);

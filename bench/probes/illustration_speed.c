@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/option.h"
+#include "base/order.h"
 #include "render/illustration/cpu/illustrate_caster.h"
 #include "render/plan/method.h"
 #include "render/scene/scene.h"
@@ -167,12 +168,6 @@ static void turn_camera(struct gz_camera *camera)
 	camera->eye[1] = sin(turn) * x + cos(turn) * y;
 }
 
-static int rising(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static void print_times(const struct speed_request *request, struct speed_times *times)
 {
 	double grey_ms = 0;
@@ -180,8 +175,10 @@ static void print_times(const struct speed_request *request, struct speed_times 
 	       "cast_ms", "of grey");
 	for (int kind = 0; kind < KINDS; kind++) {
 		const size_t middle = (size_t)request->runs / 2;
-		qsort(times[kind].total_ms, (size_t)request->runs, sizeof(double), rising);
-		qsort(times[kind].cast_ms, (size_t)request->runs, sizeof(double), rising);
+		qsort(times[kind].total_ms, (size_t)request->runs, sizeof(double),
+		      gz_compare_doubles);
+		qsort(times[kind].cast_ms, (size_t)request->runs, sizeof(double),
+		      gz_compare_doubles);
 		const double median_ms = times[kind].total_ms[middle];
 		grey_ms = kind == 0 ? median_ms : grey_ms;
 		printf("%-20s %10.2f %10.2f %10.1f %10.2f %10.2f\n", kinds[kind].name,

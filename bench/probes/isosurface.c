@@ -7,18 +7,13 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/order.h"
 #include "base/text.h"
 #include "base/workers.h"
 #include "render/mesh/isosurface.h"
 #include "render/raycast/shared/macrocells.h"
 
 enum { RUNS = 9, RUNS_MAX = 1000 };
-
-static int ascending(const void *a, const void *b)
-{
-	const double left = *(const double *)a, right = *(const double *)b;
-	return left < right ? -1 : left > right;
-}
 
 static enum gz_result measure_surface(const struct gz_isosurface_request *request,
 				      struct gz_workers *workers, int runs,
@@ -38,7 +33,7 @@ static enum gz_result measure_surface(const struct gz_isosurface_request *reques
 		vertices = mesh.vertex_count;
 		gz_mesh_free(&mesh);
 	}
-	qsort(took_ms, (size_t)runs, sizeof took_ms[0], ascending);
+	qsort(took_ms, (size_t)runs, sizeof took_ms[0], gz_compare_doubles);
 	printf("%s best_ms %.3f median_ms %.3f triangles %zu vertices %zu\n",
 	       request->blocks ? "blocks" : "plain", took_ms[0], took_ms[runs / 2], triangles,
 	       vertices);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "bench/metrics/metrics.h"
 
 /* The viewing conditions of FLIP's authors: bench/gazebench/compare.c. */
@@ -38,12 +39,6 @@ static enum gz_result measure_flip(struct bench *bench)
 		       &bench->map);
 }
 
-static int by_time(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static int print_metric(struct bench *bench, const char *name,
 			enum gz_result (*metric)(struct bench *))
 {
@@ -57,7 +52,7 @@ static int print_metric(struct bench *bench, const char *name,
 		if (i >= 0)
 			ms[i] = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	}
-	qsort(ms, (size_t)bench->rounds, sizeof *ms, by_time);
+	qsort(ms, (size_t)bench->rounds, sizeof *ms, gz_compare_doubles);
 	printf("%-5s least %7.1f ms  median %7.1f ms  mean value %.6f\n", name, ms[0],
 	       ms[bench->rounds / 2], gz_map_mean(&bench->map));
 	return 0;

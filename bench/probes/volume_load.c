@@ -5,15 +5,10 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/order.h"
 #include "render/scene/scene.h"
 
 enum { RUNS = 7 };
-
-static int ascending(const void *a, const void *b)
-{
-	const double left = *(const double *)a, right = *(const double *)b;
-	return left < right ? -1 : left > right;
-}
 
 static int measure_load_times(const char *path, const struct gz_log *log)
 {
@@ -30,7 +25,7 @@ static int measure_load_times(const char *path, const struct gz_log *log)
 		      (double)gz_voxel_size(scene.volume.type) / (1 << 20);
 		gz_scene_free(&scene);
 	}
-	qsort(took_ms, RUNS, sizeof took_ms[0], ascending);
+	qsort(took_ms, RUNS, sizeof took_ms[0], gz_compare_doubles);
 	printf("%-32s %7.0f MiB  best %7.1f ms  median %7.1f ms\n", path, mib, took_ms[0],
 	       took_ms[RUNS / 2]);
 	return EXIT_SUCCESS;

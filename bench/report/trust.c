@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/order.h"
 #include "bench/report/measures.h"
 #include "sim/random.h"
 
@@ -21,12 +22,6 @@ static double resampled_ratio(const double *over, const double *under, size_t co
 	return sum_over / sum_under;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 struct gz_interval gz_ratio_interval(const double *over, const double *under, size_t count)
 {
 	struct gz_interval interval = { NAN, NAN };
@@ -36,7 +31,7 @@ struct gz_interval gz_ratio_interval(const double *over, const double *under, si
 	struct gz_random random = gz_random_seeded(SEED, 0);
 	for (size_t i = 0; i < RESAMPLES; i++)
 		ratios[i] = resampled_ratio(over, under, count, &random);
-	qsort(ratios, RESAMPLES, sizeof ratios[0], compare_doubles);
+	qsort(ratios, RESAMPLES, sizeof ratios[0], gz_compare_doubles);
 	interval.low = gz_quantile(ratios, RESAMPLES, (1 - GZ_CONFIDENCE) / 2);
 	interval.high = gz_quantile(ratios, RESAMPLES, (1 + GZ_CONFIDENCE) / 2);
 	free(ratios);
@@ -68,7 +63,7 @@ double gz_noise_of(struct gz_kind_time *times, size_t count)
 		for (size_t i = first; i < end && end - first > 1; i++)
 			shares[found++] = times[i].ms / median;
 	}
-	qsort(shares, found, sizeof shares[0], compare_doubles);
+	qsort(shares, found, sizeof shares[0], gz_compare_doubles);
 	const double noise = (gz_quantile(shares, found, (1 + GZ_NOISE_SHARE) / 2) -
 			      gz_quantile(shares, found, (1 - GZ_NOISE_SHARE) / 2)) /
 			     2;

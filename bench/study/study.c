@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "base/portable.h"
 #include "bench/study/hash.h"
 #include "sim/random.h"
@@ -265,12 +266,6 @@ void gz_study_machine_describe(struct gz_study_machine *out_machine)
 		 __VERSION__, GZ_BUILD_TYPE);
 }
 
-static int compare_ms(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 double gz_study_copy_ms(int width, int height)
 {
 	enum { COPIES = 9 }; /* chosen: a median that one interruption does not move */
@@ -289,7 +284,7 @@ double gz_study_copy_ms(int width, int height)
 	gz_image_free(&to);
 	if (!made)
 		return NAN;
-	qsort(ms, COPIES, sizeof ms[0], compare_ms);
+	qsort(ms, COPIES, sizeof ms[0], gz_compare_doubles);
 	return ms[COPIES / 2];
 }
 

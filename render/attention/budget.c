@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/order.h"
+
 /* So many slow frames are more than 5 % of the window. */
 #define OVER_MIN (GZ_BUDGET_WINDOW / 20 + 1)
 /* Slow frames within this many frames have one cause. */
@@ -69,12 +71,6 @@ static int count_over(const struct gz_budget *budget, int newest)
 	return over;
 }
 
-static int ascending_frame_ms(const void *a, const void *b)
-{
-	double left = *(const double *)a, right = *(const double *)b;
-	return (left > right) - (left < right);
-}
-
 /* The time that OVER_MIN - 1 of the newest frames exceed: for a whole window, its 95th percentile.
  */
 static double upper_ms(const struct gz_budget *budget, int newest)
@@ -82,7 +78,7 @@ static double upper_ms(const struct gz_budget *budget, int newest)
 	double sorted[GZ_BUDGET_WINDOW];
 	memcpy(sorted, budget->frames_ms + budget->count - newest,
 	       (size_t)newest * sizeof sorted[0]);
-	qsort(sorted, (size_t)newest, sizeof sorted[0], ascending_frame_ms);
+	qsort(sorted, (size_t)newest, sizeof sorted[0], gz_compare_doubles);
 	return sorted[newest - OVER_MIN];
 }
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 
 static struct gz_client *open_client(void)
 {
@@ -62,12 +63,6 @@ static int64_t wait_connected(struct gz_client *client, bool wanted)
 	return gz_clock_now_ns() - start_ns;
 }
 
-static int compare_times(const void *a, const void *b)
-{
-	int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-	return (x > y) - (x < y);
-}
-
 static void latest_without_a_daemon_times_out_and_never_blocks(void **state)
 {
 	(void)state;
@@ -82,7 +77,7 @@ static void latest_without_a_daemon_times_out_and_never_blocks(void **state)
 		spent_ns[i] = gz_clock_now_ns() - start_ns;
 	}
 	/* The median, because on a busy machine single calls wait for other programs. */
-	qsort(spent_ns, CALLS, sizeof spent_ns[0], compare_times);
+	qsort(spent_ns, CALLS, sizeof spent_ns[0], gz_compare_int64s);
 	print_message("median %lld ns, longest %lld ns\n", (long long)spent_ns[CALLS / 2],
 		      (long long)spent_ns[CALLS - 1]);
 	assert_in_range(spent_ns[CALLS / 2], 0, GZ_NS_PER_MS);

@@ -13,6 +13,7 @@
 #include <zlib.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "client/gazectl/convert/recording_format.h"
 #include "filter/pipeline.h"
 #include "tests/base/captured_log.h"
@@ -125,12 +126,6 @@ static enum gz_result take(void *user, const struct gz_gaze_log_record *record)
 	return GZ_OK;
 }
 
-static int by_value(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 /* @p still: the person looks at one place for seconds, according to the tracker's own software. */
 static void check_run(struct run *run, const char *name, bool still)
 {
@@ -143,7 +138,7 @@ static void check_run(struct run *run, const char *name, bool still)
 	double saccades_s = (double)run->saccades / looking_s;
 	double noise = sqrt(run->smooth_step2 / run->raw_step2);
 	double settled = sqrt(run->smooth_settled2 / run->raw_settled2);
-	qsort(run->duration_ms, run->fixations, sizeof run->duration_ms[0], by_value);
+	qsort(run->duration_ms, run->fixations, sizeof run->duration_ms[0], gz_compare_doubles);
 	double median_ms = run->duration_ms[run->fixations / 2];
 	printf("%-34s %5.0f Hz %6.1f s, %3.0f %% good: %4.2f saccades/s, fixations' median %4.0f "
 	       "ms, noise %.2f of raw, %.2f when settled\n",

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "filter/pipeline.h"
 #include "sim/tracker.h"
 
@@ -17,16 +18,10 @@ struct errors {
 	double predicted_deg[SAMPLES], now_deg[SAMPLES], late_ms[SAMPLES];
 };
 
-static int by_size(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static double median(double *numbers, size_t count)
 {
 	assert_true(count > 0);
-	qsort(numbers, count, sizeof *numbers, by_size);
+	qsort(numbers, count, sizeof *numbers, gz_compare_doubles);
 	return numbers[count / 2];
 }
 

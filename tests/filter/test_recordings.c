@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
 #include "bench/filter/precision.h"
@@ -89,17 +90,11 @@ static void list_add(struct list *list, double value)
 		list->value[list->count++] = value;
 }
 
-static int by_value(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static double list_part(struct list *list, double part)
 {
 	if (list->count == 0)
 		return NAN;
-	qsort(list->value, list->count, sizeof list->value[0], by_value);
+	qsort(list->value, list->count, sizeof list->value[0], gz_compare_doubles);
 	return list->value[(size_t)(part * (double)(list->count - 1))];
 }
 

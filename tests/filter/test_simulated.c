@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "filter/pipeline.h"
 #include "sim/tracker.h"
 
@@ -49,16 +50,10 @@ static void compare(struct sums *s, const struct gz_display *display,
 	s->smooth_step2 += square(gz_display_angle_deg(display, out->point, last_out->point));
 }
 
-static int by_value(const void *a, const void *b)
-{
-	int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-	return (x > y) - (x < y);
-}
-
 /* The time of a step includes reading the clock, about 20 ns. */
 static void time_steps(struct sums *sums, int64_t *step_ns)
 {
-	qsort(step_ns, COUNT, sizeof *step_ns, by_value);
+	qsort(step_ns, COUNT, sizeof *step_ns, gz_compare_int64s);
 	sums->median_ns = (double)step_ns[COUNT / 2];
 	sums->late_ns = (double)step_ns[COUNT - COUNT / 100];
 }

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/order.h"
 #include "client/stream.h"
 #include "protocol/endpoint.h"
 #include "render/picture/image.h"
@@ -256,12 +257,6 @@ static void every_frame_shows_a_gaze_of_the_stream_in_its_order(void **state)
 	assert_true(frames[frame_count - 1].message > frames[0].message + 100);
 }
 
-static int by_value(const void *a, const void *b)
-{
-	double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 /* The lower quartile of the ages of some frames. */
 static double age_quartile_ms(const struct frame *from, int count)
 {
@@ -270,7 +265,7 @@ static double age_quartile_ms(const struct frame *from, int count)
 		ages[i] = from[i].age_ms;
 		assert_true(ages[i] >= 0);
 	}
-	qsort(ages, (size_t)count, sizeof ages[0], by_value);
+	qsort(ages, (size_t)count, sizeof ages[0], gz_compare_doubles);
 	print_message("gaze age of %d frames: quarter %.2f ms, median %.2f ms, most %.2f ms\n",
 		      count, ages[count / 4], ages[count / 2], ages[count - 1]);
 	return ages[count / 4];

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/order.h"
+
 /* How far a gap of several steps may be from a multiple, in steps (chosen: with a half any gap is
  * one). */
 #define MULTIPLE_MOST 0.25
@@ -12,12 +14,6 @@
 /* A weight, or a part of a pixel, below this counts as 0. Chosen: it changes a number of 12 bits by
  * less than a half, and positions in files are rounded to more. */
 #define SNAP 1e-4
-
-static int compare_doubles(const void *a, const void *b)
-{
-	const double left = *(const double *)a, right = *(const double *)b;
-	return (left > right) - (left < right);
-}
 
 size_t gz_slice_gap_steps(const struct gz_slice_gaps *gaps, double gap_mm)
 {
@@ -52,7 +48,7 @@ enum gz_result gz_slice_gaps_find(const double *along_mm, size_t count,
 		return GZ_ERR_NO_MEM;
 	for (size_t i = 0; i + 1 < count; i++)
 		sorted[i] = along_mm[i + 1] - along_mm[i];
-	qsort(sorted, count - 1, sizeof *sorted, compare_doubles);
+	qsort(sorted, count - 1, sizeof *sorted, gz_compare_doubles);
 	struct gz_slice_gaps gaps = { .usual_mm = sorted[(count - 2) / 2],
 				      .least_mm = sorted[0],
 				      .greatest_mm = sorted[count - 2] };
