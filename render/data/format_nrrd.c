@@ -36,6 +36,7 @@ struct nrrd {
 	double directions[AXES_MAX][3]; /* as written; NaN: none */
 	double sign[3];                 /* of the written space in RAS+ */
 	bool has_type, has_sizes, has_encoding, has_endian, has_spacings, has_directions;
+	bool has_assumed_spacing;        /* the program that wrote it did not know either */
 	bool anatomical, values_first;   /* the first axis holds the parts of a value */
 	bool has_first_kind;             /* what the first axis holds is known */
 	int colour_channels;             /* of a first axis that holds colours; else 0 */
@@ -375,11 +376,18 @@ static const struct field fields[] = {
 	{ { "byte skip", "byteskip" }, false, take_nrrd_byte_skip },
 };
 
+/* Our own key: directions have some length, even if it is assumed. */
+#define ASSUMED_SPACING "gazecast_spacing:=assumed"
+
 static enum gz_result take_nrrd_line(struct nrrd *nrrd, char *line)
 {
 	char *colon = strchr(line, ':');
-	if (line[0] == '#' || (colon && colon[1] == '=')) /* a comment, a key with its value */
+	if (line[0] == '#')
 		return GZ_OK;
+	if (colon && colon[1] == '=') {
+		nrrd->has_assumed_spacing |= strcmp(line, ASSUMED_SPACING) == 0;
+		return GZ_OK;
+	}
 	if (!colon)
 		return refuse_nrrd(nrrd, line,
 				   "neither a field nor a comment; write \"field: value\"");
@@ -506,6 +514,7 @@ static void place_nrrd_axes(struct nrrd *nrrd, int first)
 			layout->direction[axis][i] = nrrd->sign[i] * d[i];
 	}
 	layout->oriented = nrrd->anatomical;
+	layout->spacing_assumed = nrrd->has_assumed_spacing;
 }
 
 static enum gz_result choose_nrrd_axes(struct nrrd *nrrd)
@@ -646,12 +655,14 @@ static int print_nrrd_header(const struct gz_volume *volume, const struct nrrd_f
 		 axes[channels].direction, s[0], s[1], s[2]);
 	/* What is not known is not stated, except that directions have some length. */
 	const bool placed = volume->oriented || !volume->spacing_assumed;
+	const bool assumed = volume->oriented && volume->spacing_assumed;
 	return snprintf(out, size,
 			"NRRD0005\ntype: %s\ndimension: %s\n%ssizes: %s%d %d %d\n%s%s"
-			"endian: %s\nencoding: raw\n\n",
+			"endian: %s\nencoding: raw\n%s\n",
 			form->name, axes[channels].dimension, placed ? space : "",
 			axes[channels].size, dims[0], dims[1], dims[2], placed ? directions : "",
-			axes[channels].kinds, gz_host_big_endian() ? "big" : "little");
+			axes[channels].kinds, gz_host_big_endian() ? "big" : "little",
+			assumed ? ASSUMED_SPACING "\n" : "");
 }
 
 static void convert_to_colours(const struct gz_volume *volume, size_t first, size_t count,
