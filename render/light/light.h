@@ -57,7 +57,7 @@ enum gz_light_frame {
  * which has no gradient, has shadows too. With n steps, s = GZ_SHADOW_START, and R = shadow_reach
  * or, if that is less, the longest way through the box along the light, step i goes from
  * s + (R - s) (i / n)^2 to s + (R - s) ((i + 1) / n)^2 voxel lengths from the sample, as far as the
- * clip box reaches. So the first steps are fine and show where things touch, and far shadows are
+ * clip region reaches. So the first steps are fine and show where things touch, and far shadows are
  * soft. A step of length l and its middle at p
  * multiplies T by
  *

@@ -42,7 +42,7 @@ struct job {
 	const struct gz_volume *volume;
 	const struct gz_transfer_table *table;
 	struct gz_occlusion *occlusion;
-	int from[3], to[3];                        /* voxels within the clip box, [from, to) */
+	int from[3], to[3];                        /* voxels within the clip region, [from, to) */
 	uint16_t by_entry[GZ_TRANSFER_TABLE_MOST]; /* how much a voxel fills, by its table entry */
 	uint16_t by_value[INTEGER_VALUES];         /* how much a voxel fills, by its stored value */
 	int axis;                                  /* along which cells are weighted */
@@ -62,17 +62,6 @@ static void find_filled(struct job *job, double radius)
 	for (int value = 0; value < values; value++)
 		job->by_value[value] =
 			job->by_entry[gz_transfer_table_nearest(job->table, (float)value)];
-}
-
-/* The voxels whose centres lie in the clip box. */
-static void find_clip(struct job *job, const struct gz_clip_box *clip)
-{
-	for (int axis = 0; axis < 3; axis++) {
-		const int dim = job->volume->dims[axis];
-		job->from[axis] = (int)ceil(clip->least[axis] * dim - 0.5);
-		job->to[axis] = (int)floor(clip->greatest[axis] * dim - 0.5) + 1;
-		job->to[axis] = job->to[axis] < dim ? job->to[axis] : dim;
-	}
 }
 
 static uint32_t sum_row(const struct job *job, size_t from, int count)
@@ -201,7 +190,7 @@ static void make_grid(struct job *job, double radius, struct gz_workers *workers
 
 enum gz_result gz_occlusion_make(const struct gz_volume *volume,
 				 const struct gz_transfer_table *table, double radius,
-				 const struct gz_clip_box *clip, struct gz_workers *workers,
+				 const struct gz_clip_region *clip, struct gz_workers *workers,
 				 struct gz_occlusion *occlusion)
 {
 	gz_occlusion_edges(volume, radius, occlusion->edge);
@@ -219,7 +208,7 @@ enum gz_result gz_occlusion_make(const struct gz_volume *volume,
 	job->table = table;
 	job->occlusion = occlusion;
 	find_filled(job, radius);
-	find_clip(job, clip);
+	gz_clip_region_voxels(clip, volume->dims, job->from, job->to);
 	make_grid(job, radius, workers);
 	free(job);
 	return GZ_OK;

@@ -2,7 +2,7 @@
  * @file
  * Ambient occlusion: how much of the light from all directions the surroundings of a point block.
  * It is computed on a grid much coarser than the volume, for a transfer function, a radius and a
- * clip box.
+ * clip region.
  *
  * The measure is volumetric obscurance (Loos and Sloan, Volumetric Obscurance, I3D 2010): the share
  * of the neighbourhood that is filled. A plane fills half of it in any direction, so no normal
@@ -10,7 +10,7 @@
  * walls loses half of it, a corner three quarters, a narrow hole all. With R the radius:
  *
  * - a voxel of opacity a (per voxel length) is filled by 1 - (1 - a)^(R/2), the opacity of a path
- * of length R/2. Voxels outside the box or the clip box are empty.
+ * of length R/2. Voxels outside the box or the clip region are empty.
  * - a cell is a block of `edge` voxels along each axis; it is filled by the mean of its voxels,
  * those outside the box counted as empty; its datum sits at its centre.
  * - B is the weighted mean over cells; the weight is the product over the axes of max(0, 1 -
@@ -24,7 +24,7 @@
 
 #include "base/result.h"
 #include "base/workers.h"
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/data/volume.h"
 #include "render/transfer/transfer_table.h"
 
@@ -54,7 +54,7 @@ void gz_occlusion_edges(const struct gz_volume *volume, double radius, int out_e
  */
 enum gz_result gz_occlusion_make(const struct gz_volume *volume,
 				 const struct gz_transfer_table *table, double radius,
-				 const struct gz_clip_box *clip, struct gz_workers *workers,
+				 const struct gz_clip_region *clip, struct gz_workers *workers,
 				 struct gz_occlusion *occlusion);
 
 /** Free and zero. */

@@ -151,11 +151,10 @@ static void view_axes(const struct gz_camera *camera, double axes[3][3])
 }
 
 void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume,
-		   const struct gz_clip_box *box)
+		   const struct gz_clip_region *box)
 {
-	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
 	double half[3], middle[3], axes[3][3], distance = 0, greatest = 0;
-	const struct gz_clip_box *seen = box ? box : &whole;
+	const struct gz_clip_region *seen = box ? box : &gz_clip_whole;
 	const double slope = FIT_SHARE * tan(camera->fov_deg * RADIANS_PER_DEGREE / 2);
 	gz_volume_half_extent(volume, half);
 	for (int i = 0; i < 3; i++) {
@@ -198,7 +197,7 @@ static void choose_first_view(struct gz_scene *scene)
 	const bool to_front = scene->volume.oriented || !has_volume;
 	const double eye[3] = { 0.8, to_front ? 1.3 : -1.3, 0.5 };
 	struct gz_camera *camera = &scene->settings.camera;
-	struct gz_clip_box content = scene->settings.rays.clip;
+	struct gz_clip_region content = scene->settings.rays.clip;
 	memcpy(camera->eye, eye, sizeof eye);
 	if (has_volume)
 		gz_content_find(&scene->volume, &scene->transfer, &content, &content);

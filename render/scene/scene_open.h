@@ -8,7 +8,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/scene/scene.h"
 
 /** The kinds of files that gazeview opens. */
@@ -76,6 +76,6 @@ enum gz_result gz_scene_settings_for_volume(const char *path, const struct gz_ra
  * @param box  the part, such as what gz_content_find() finds; NULL: the whole volume
  */
 void gz_camera_fit(struct gz_camera *camera, const struct gz_volume *volume,
-		   const struct gz_clip_box *box);
+		   const struct gz_clip_region *box);
 
 #endif

@@ -335,7 +335,7 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 				name);
 		return GZ_OK;
 	}
-	const struct gz_clip_box *clip = &settings->rays.clip;
+	const struct gz_clip_region *clip = &settings->rays.clip;
 	bool below = true;
 	for (int axis = 0; axis < 3; axis++)
 		below = below && clip->least[axis] < clip->greatest[axis];

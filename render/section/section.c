@@ -250,25 +250,6 @@ static void box_ray(const struct gz_volume *volume, const double origin[3],
 	}
 }
 
-/* The part of a ray within a box, as multiples of its direction. */
-static bool cross_box(const double from[3], const double along[3], const struct gz_clip_box *box,
-		      double out_ends[2])
-{
-	out_ends[0] = 0;
-	out_ends[1] = INFINITY;
-	for (int i = 0; i < 3; i++) {
-		const double a = (box->least[i] - from[i]) / along[i];
-		const double b = (box->greatest[i] - from[i]) / along[i];
-		if (along[i] == 0 && (from[i] < box->least[i] || from[i] > box->greatest[i]))
-			return false;
-		if (along[i] == 0)
-			continue;
-		out_ends[0] = fmax(out_ends[0], fmin(a, b));
-		out_ends[1] = fmin(out_ends[1], fmax(a, b));
-	}
-	return out_ends[0] < out_ends[1] && isfinite(out_ends[1]);
-}
-
 /* Steps along a ray through a volume. */
 struct walk {
 	const struct gz_volume *volume;
@@ -283,9 +264,12 @@ static bool begin_walk(const struct gz_volume *volume, const struct gz_transfer 
 		       const struct gz_section_ray *ray, struct walk *out_walk)
 {
 	struct walk walk = { .volume = volume, .transfer = transfer };
+	static const double one[3] = { 1, 1, 1 }, none[3] = { 0, 0, 0 };
+	struct gz_clip_bounds bounds;
 	double ends[2], voxels = 0;
 	box_ray(volume, ray->origin, ray->direction, walk.from, walk.along);
-	if (!cross_box(walk.from, walk.along, &ray->clip, ends) || ends[0] >= ray->until)
+	gz_clip_region_place(&ray->clip, one, none, &bounds);
+	if (!gz_clip_bounds_cross(&bounds, walk.from, walk.along, ends) || ends[0] >= ray->until)
 		return false;
 	const double voxel_mm =
 		fmin(volume->spacing[0], fmin(volume->spacing[1], volume->spacing[2]));
@@ -340,12 +324,10 @@ static long walk_until(const struct walk *walk, double opacity, double *out_pass
 	return n;
 }
 
-static const struct gz_clip_box whole_box = { .greatest = { 1, 1, 1 } };
-
 bool gz_section_hit(const struct gz_volume *volume, const struct gz_transfer *transfer,
 		    const double origin[3], const double direction[3], double out_place[3])
 {
-	struct gz_section_ray ray = { .until = INFINITY, .clip = whole_box };
+	struct gz_section_ray ray = { .until = INFINITY, .clip = gz_clip_whole };
 	struct walk walk;
 	double passed;
 	memcpy(ray.origin, origin, sizeof ray.origin);

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 
 #include "base/result.h"
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/data/volume.h"
 #include "render/picture/image.h"
 #include "render/transfer/transfer.h"
@@ -101,8 +101,8 @@ bool gz_section_hit(const struct gz_volume *volume, const struct gz_transfer *tr
 /** A ray through a volume, in the world of render/data/volume.h. */
 struct gz_section_ray {
 	double origin[3], direction[3];
-	double until;            /**< where it ends, multiples of the direction; may be INFINITY */
-	struct gz_clip_box clip; /**< nothing is seen outside */
+	double until; /**< where it ends, multiples of the direction; may be INFINITY */
+	struct gz_clip_region clip; /**< nothing is seen outside */
 };
 
 /** What is seen of a volume along a ray. */

@@ -39,7 +39,7 @@ struct gz_shade {
 		     float out_shares[GZ_SHADE_PLACES]);
 	const void *user; /**< borrowed from a drawer, until it draws the next picture */
 	/** Another number, in this process, than that of any shade which differs but for the
-	 * light's direction and the clip box. 0: not known. */
+	 * light's direction and the clip region. 0: not known. */
 	uint64_t revision;
 };
 

@@ -90,7 +90,7 @@ static void count_seen(struct search *search)
 }
 
 /* Let cells be so wide that there are not too many, and leave out those outside. */
-static void choose_grid(struct search *search, const struct gz_clip_box *within)
+static void choose_grid(struct search *search, const struct gz_clip_region *within)
 {
 	const int *dims = search->volume->dims;
 	search->step = 1;
@@ -121,7 +121,7 @@ static int content_end(const struct search *search, int axis, bool first)
 }
 
 void gz_content_find(const struct gz_volume *volume, const struct gz_transfer *transfer,
-		     const struct gz_clip_box *within, struct gz_clip_box *out_content)
+		     const struct gz_clip_region *within, struct gz_clip_region *out_content)
 {
 	*out_content = *within;
 	struct search *search = volume->bricks ? NULL : calloc(1, sizeof *search);

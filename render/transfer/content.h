@@ -5,7 +5,7 @@
 #ifndef GZ_RENDER_TRANSFER_CONTENT_H
 #define GZ_RENDER_TRANSFER_CONTENT_H
 
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/data/volume.h"
 #include "render/transfer/transfer.h"
 
@@ -20,6 +20,6 @@
  * Threads: any. Takes some 10 ms.
  */
 void gz_content_find(const struct gz_volume *volume, const struct gz_transfer *transfer,
-		     const struct gz_clip_box *within, struct gz_clip_box *out_content);
+		     const struct gz_clip_region *within, struct gz_clip_region *out_content);
 
 #endif

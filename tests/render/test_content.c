@@ -5,8 +5,6 @@
 
 #include "render/transfer/content.h"
 
-static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
-
 /* Values above the middle of the range are solid. */
 static const struct gz_transfer upper_half = {
 	.count = 2,
@@ -43,7 +41,7 @@ static struct gz_volume bright_box(enum gz_voxel_type type, int edge, const int 
 	return volume;
 }
 
-static void assert_box(const struct gz_clip_box *box, const double least[3],
+static void assert_box(const struct gz_clip_region *box, const double least[3],
 		       const double greatest[3])
 {
 	for (int i = 0; i < 3; i++) {
@@ -59,8 +57,8 @@ static void box_is_exact_for_each_type(void **state)
 	static const double shares[2][3] = { { 0.1, 0.25, 0.5 }, { 0.75, 0.5, 1 } };
 	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
 		struct gz_volume volume = bright_box((enum gz_voxel_type)type, 40, least, greatest);
-		struct gz_clip_box box;
-		gz_content_find(&volume, &upper_half, &whole, &box);
+		struct gz_clip_region box;
+		gz_content_find(&volume, &upper_half, &gz_clip_whole, &box);
 		assert_box(&box, shares[0], shares[1]);
 		gz_volume_free(&volume);
 	}
@@ -72,8 +70,8 @@ static void box_of_a_large_volume_is_exact_to_the_grid(void **state)
 	(void)state;
 	static const int least[3] = { 51, 0, 100 }, greatest[3] = { 120, 200, 151 };
 	struct gz_volume volume = bright_box(GZ_VOXEL_U8, 200, least, greatest);
-	struct gz_clip_box box;
-	gz_content_find(&volume, &upper_half, &whole, &box);
+	struct gz_clip_region box;
+	gz_content_find(&volume, &upper_half, &gz_clip_whole, &box);
 	assert_box(&box, (const double[3]) { 0.26, 0, 0.5 }, (const double[3]) { 0.6, 1, 0.76 });
 	gz_volume_free(&volume);
 }
@@ -82,12 +80,12 @@ static void specks_what_is_clipped_and_nothing_do_not_count(void **state)
 {
 	(void)state;
 	static const int least[3] = { 10, 10, 10 }, greatest[3] = { 30, 30, 30 };
-	static const struct gz_clip_box left = { { 0, 0, 0 }, { 0.5, 1, 1 } };
+	static const struct gz_clip_region left = { .greatest = { 0.5, 1, 1 } };
 	struct gz_volume volume = bright_box(GZ_VOXEL_U8, 40, least, greatest);
 	struct gz_transfer nothing = upper_half;
-	struct gz_clip_box box;
+	struct gz_clip_region box;
 	((uint8_t *)volume.voxels)[0] = 100;
-	gz_content_find(&volume, &upper_half, &whole, &box);
+	gz_content_find(&volume, &upper_half, &gz_clip_whole, &box);
 	assert_box(&box, (const double[3]) { 0.25, 0.25, 0.25 },
 		   (const double[3]) { 0.75, 0.75, 0.75 });
 	gz_content_find(&volume, &upper_half, &left, &box);
@@ -95,7 +93,7 @@ static void specks_what_is_clipped_and_nothing_do_not_count(void **state)
 		   (const double[3]) { 0.5, 0.75, 0.75 });
 	nothing.points[1].opacity = 0;
 	gz_content_find(&volume, &nothing, &left, &box);
-	assert_true(gz_clip_box_same(&box, &left));
+	assert_true(gz_clip_region_same(&box, &left));
 	gz_volume_free(&volume);
 }
 

@@ -39,7 +39,7 @@ struct easel {
 	size_t count;
 	struct gz_camera camera;
 	struct gz_illustration_look look;
-	struct gz_clip_box clip;
+	struct gz_clip_region clip;
 	uint32_t chosen_id;
 	struct gz_foveation foveation;
 	struct gz_plan plan;
@@ -63,7 +63,7 @@ static void set_up_easel(struct easel *easel)
 	for (int i = 0; i < GZ_ILLUSTRATION_BINDINGS; i++)
 		assert_int_equal(gz_options_preset(&bindings[i]), GZ_OK);
 	easel->look.combined.spatial_effect = 1;
-	easel->clip = (struct gz_clip_box) { { 0, 0, 0 }, { 1, 1, 1 } };
+	easel->clip = gz_clip_whole;
 	easel->foveation = gz_foveation_full();
 	easel->camera = (struct gz_camera) {
 		.eye = { 0.4, -1.9, 0.3 }, .up = { 0, 0, 1 }, .fov_deg = 30, .height = 1

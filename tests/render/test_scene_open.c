@@ -84,7 +84,7 @@ static void binary_file_is_no_scene(void **state)
 
 /* How far from the picture's middle the corners of a box are at most, as a share of the picture. */
 static double widest_corner(const struct gz_camera *camera, const struct gz_volume *volume,
-			    const struct gz_clip_box *box)
+			    const struct gz_clip_region *box)
 {
 	double half[3], widest = 0;
 	gz_volume_half_extent(volume, half);
@@ -104,13 +104,12 @@ static double widest_corner(const struct gz_camera *camera, const struct gz_volu
 static void volume_without_a_scene_is_lit_and_what_is_seen_of_it_fills_the_view(void **state)
 {
 	(void)state;
-	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
 	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
-	struct gz_clip_box content;
+	struct gz_clip_region content;
 	assert_true(scene.settings.volume_file[0] == '/');
 	assert_true(scene.transfer.count >= 1);
 	assert_int_equal(scene.settings.rays.shading, GZ_SHADING_GRADIENT);
-	gz_content_find(&scene.volume, &scene.transfer, &whole, &content);
+	gz_content_find(&scene.volume, &scene.transfer, &gz_clip_whole, &content);
 	assert_true(content.least[2] >= 0.25 && content.greatest[2] == 1);
 	const double widest = widest_corner(&scene.settings.camera, &scene.volume, &content);
 	if (!(widest > 0.44 && widest < 0.46))
@@ -300,11 +299,10 @@ static void fitted_camera_sees_the_box_in_either_projection(void **state)
 {
 	(void)state;
 	struct gz_scene scene = opened(write_nrrd("v.nrrd"), NULL);
-	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
 	struct gz_camera camera = scene.settings.camera;
 	camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
 	gz_camera_fit(&camera, &scene.volume, NULL);
-	const double widest = widest_corner(&camera, &scene.volume, &whole);
+	const double widest = widest_corner(&camera, &scene.volume, &gz_clip_whole);
 	if (!(widest > 0.44 && widest < 0.46))
 		fail_msg("the box takes %g of half the picture", 2 * widest);
 	gz_scene_free(&scene);

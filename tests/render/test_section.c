@@ -338,7 +338,7 @@ static void a_look_sees_what_the_clip_box_leaves(void **state)
 	ray.clip.least[0] = 0.6;
 	assert_false(gz_section_look(&volume, &solid, &ray, &seen));
 	/* Labels are not mixed. */
-	ray.clip = (struct gz_clip_box) { .greatest = { 1, 1, 1 } };
+	ray.clip = gz_clip_whole;
 	ray.clip.least[2] = 0.49;
 	volume.labels = true;
 	assert_true(gz_section_look(&volume, &solid, &ray, &seen));

@@ -16,8 +16,7 @@ static struct gz_slice_request request_of(const struct gz_camera *camera, int co
 {
 	struct gz_slice_request request = {
 		.half = { 0.5, 0.3, 0.4 },
-		.least = { -0.5, -0.3, -0.4 },
-		.greatest = { 0.5, 0.3, 0.4 },
+		.shown = { .least = { -0.5, -0.3, -0.4 }, .greatest = { 0.5, 0.3, 0.4 } },
 		.count = count,
 	};
 	assert_int_equal(gz_camera_rays(camera, WIDTH, HEIGHT, &request.rays), GZ_OK);
@@ -170,7 +169,7 @@ static void box_is_cut_again_only_for_another_view(void **state)
 	assert_int_equal(gz_slice_cut_make(&request, &cut), GZ_OK);
 	assert_int_equal(cut.revision, revision);
 	const double distance = cut.distance, before = slice_area(&cut, 5);
-	request.greatest[2] = 0; /* a clip box leaves the slices where they are */
+	request.shown.greatest[2] = 0; /* a clip box leaves the slices where they are */
 	assert_int_equal(gz_slice_cut_make(&request, &cut), GZ_OK);
 	assert_int_not_equal(cut.revision, revision);
 	assert_true(cut.distance == distance);

@@ -101,7 +101,7 @@ struct change {
 static void keep_settings(const struct gz_scene_settings *kept, struct gz_scene_settings *settings)
 {
 	const struct gz_foveation own = settings->foveation;
-	const struct gz_clip_box clip = settings->rays.clip;
+	const struct gz_clip_region clip = settings->rays.clip;
 	struct gz_environment *environment = &settings->rays.environment;
 	const struct gz_environment around = *environment;
 	settings->rays = kept->rays;

@@ -38,7 +38,7 @@ static bool handles_are_there(const struct gz_window *window)
 	       !gz_window_has_sections(window);
 }
 
-static struct gz_clip_box *box_of(struct gz_window *window)
+static struct gz_clip_region *box_of(struct gz_window *window)
 {
 	return &window->settings.rays.clip;
 }
@@ -68,7 +68,7 @@ static bool place_in_window(const struct gz_window *window, const double share[3
 static bool face_in_window(struct gz_window *window, int face, double moved,
 			   struct gz_place *out_place)
 {
-	const struct gz_clip_box *box = box_of(window);
+	const struct gz_clip_region *box = box_of(window);
 	double share[3];
 	for (int axis = 0; axis < 3; axis++)
 		share[axis] = (box->least[axis] + box->greatest[axis]) / 2;
@@ -108,7 +108,7 @@ static void drag_face(struct gz_window *window, double right, double down)
 {
 	const int face = window->clip->face, axis = face % 3;
 	const double step = 0.01;
-	struct gz_clip_box *box = box_of(window);
+	struct gz_clip_region *box = box_of(window);
 	struct gz_place at, ahead;
 	if (!handles_are_there(window) || !face_in_window(window, face, 0, &at) ||
 	    !face_in_window(window, face, step, &ahead))
@@ -128,7 +128,7 @@ static void drag_face(struct gz_window *window, double right, double down)
 
 static void draw_edges(struct gz_window *window)
 {
-	const struct gz_clip_box *box = box_of(window);
+	const struct gz_clip_region *box = box_of(window);
 	for (int axis = 0; axis < 3; axis++)
 		for (int side = 0; side < 4; side++) {
 			const int other = (axis + 1) % 3, third = (axis + 2) % 3;
@@ -185,14 +185,14 @@ static bool are_handles_on(const struct gz_window *window, int number)
 
 static bool is_clipped(const struct gz_window *window)
 {
-	static const struct gz_clip_box whole = { { 0, 0, 0 }, { 1, 1, 1 } };
-	return has_scene_to_clip(window) && !gz_clip_box_same(&window->settings.rays.clip, &whole);
+	return has_scene_to_clip(window) &&
+	       !gz_clip_region_same(&window->settings.rays.clip, &gz_clip_whole);
 }
 
 static void show_whole_box(struct gz_window *window, int number)
 {
 	(void)number;
-	*box_of(window) = (struct gz_clip_box) { { 0, 0, 0 }, { 1, 1, 1 } };
+	*box_of(window) = gz_clip_whole;
 	window->cast_needed = true;
 }
 

@@ -21,10 +21,10 @@ struct shading_lanes {
 struct illustrate_packet {
 	struct RTCRayHit16 hit;
 	alignas(64) int valid[RAYS]; /* -1: cast this ray */
-	float ends[RAYS];            /* where rays leave the clip box */
+	float ends[RAYS];            /* where rays leave the clip region */
 };
 
-/* Cut a ray by the clip box. Returns whether something of it is left. */
+/* Cut a ray by the clip region. Returns whether something of it is left. */
 static bool clip_ray(const struct gz_illustrate_cast *cast, struct RTCRay16 *ray, int i)
 {
 	const float origin[3] = { ray->org_x[i], ray->org_y[i], ray->org_z[i] };

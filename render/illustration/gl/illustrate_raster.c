@@ -210,7 +210,7 @@ static enum gz_result fill_looks(struct gz_illustrate_raster *raster)
 	return GZ_OK;
 }
 
-/* The part of the meshes' box that the clip box leaves. */
+/* The part of the meshes' box that the clip region leaves. */
 static struct gz_raster_box illustrated_box(const struct gz_illustrate_raster *raster)
 {
 	const struct gz_illustrate_frame *frame = &raster->frame;

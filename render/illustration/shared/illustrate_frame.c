@@ -9,16 +9,21 @@
 static const double plain_lamp[3] = { -0.5, 0.5, 1 };
 
 static void fill_illustrate_clip(const struct gz_illustrate_scene *scene,
-				 const struct gz_clip_box *clip, struct gz_illustrate_frame *frame)
+				 const struct gz_clip_region *clip,
+				 struct gz_illustrate_frame *frame)
 {
 	const struct gz_volume *volume = scene->meshes.items[0].object.volume;
-	frame->clipped = false;
-	for (int axis = 0; clip && axis < 3; axis++) {
-		const double edge = volume->dims[axis] * volume->spacing[axis];
-		frame->clipped =
-			frame->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;
-		frame->clip_least[axis] = (float)((clip->least[axis] - 0.5) * edge);
-		frame->clip_greatest[axis] = (float)((clip->greatest[axis] - 0.5) * edge);
+	struct gz_clip_bounds bounds;
+	double edges[3], corner[3];
+	frame->clipped = !gz_clip_region_same(clip, &gz_clip_whole);
+	for (int axis = 0; axis < 3; axis++) {
+		edges[axis] = volume->dims[axis] * volume->spacing[axis];
+		corner[axis] = -edges[axis] / 2;
+	}
+	gz_clip_region_place(clip, edges, corner, &bounds);
+	for (int axis = 0; axis < 3; axis++) {
+		frame->clip_least[axis] = (float)bounds.least[axis];
+		frame->clip_greatest[axis] = (float)bounds.greatest[axis];
 	}
 }
 
@@ -160,7 +165,7 @@ enum gz_result gz_illustrate_frame_make(const struct gz_illustrate_scene *scene,
 	const enum gz_result result = fill_illustrate_looks(scene, shot->look, camera, frame);
 	if (result != GZ_OK)
 		return result;
-	fill_illustrate_clip(scene, shot->clip, frame);
+	fill_illustrate_clip(scene, shot->clip ? shot->clip : &gz_clip_whole, frame);
 	turn_light(camera, plain_lamp, frame->lamp);
 	find_depth_range(scene, camera, &shot->plan->view, frame);
 	return GZ_OK;

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/illustration/illustration_look.h"
 #include "render/picture/camera.h"
 #include "render/picture/plane.h"
@@ -22,7 +22,7 @@ struct gz_illustrate_shot {
 	const struct gz_camera *camera;
 	const struct gz_plan *plan;
 	const struct gz_illustration_look *look; /**< with its template found */
-	const struct gz_clip_box *clip;          /**< only what lies in it shows; NULL: all */
+	const struct gz_clip_region *clip;       /**< only what lies in it shows; NULL: all */
 	double isovalue;                         /**< of objects that are volumes */
 	uint32_t chosen_id; /**< object from which distances count; 0: none. Used if
 				 settings->object_distance is above 0 */

@@ -5,7 +5,7 @@
 /* Most objects of a picture. Chosen: an atlas of the brain has 116 regions. */
 enum { SURFACES_MAX = 1024 };
 
-/* The clip box, the isovalue, and all that says how surfaces are shaded. */
+/* The clip region, the isovalue, and all that says how surfaces are shaded. */
 static size_t illustrate_bind(void *settings, struct gz_option_binding *out_bindings, size_t room)
 {
 	enum { OWN = 2 + GZ_ILLUSTRATION_BINDINGS };

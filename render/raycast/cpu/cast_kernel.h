@@ -10,9 +10,9 @@
  * constants of the kernel, so that the compiler drops what it does not need.
  *
  * A ray is cut into segments of one step, from where it enters the box, or a jitter before. A
- * sample lies in the middle of each, at k + 1/2 steps. Where the box or the clip box cuts a segment
- * at an end of the ray, the sample lies in the middle of what is left, and its opacity is corrected
- * for that length. k is a count, so skipping empty space never shifts the samples.
+ * sample lies in the middle of each, at k + 1/2 steps. Where the box or the clip region cuts a
+ * segment at an end of the ray, the sample lies in the middle of what is left, and its opacity is
+ * corrected for that length. k is a count, so skipping empty space never shifts the samples.
  */
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"

@@ -79,7 +79,7 @@ SIMD void count_segments(struct cuts cuts, vf shift, struct rays *rays)
 	rays->rest = vf_select(vf_less(rays->end, rays->first), none, to - rays->end);
 }
 
-/* Set up SIMD_LANES rays of a tile from number `first` on, cut by the box and the clip box.
+/* Set up SIMD_LANES rays of a tile from number `first` on, cut by the box and the clip region.
  * Segments begin a jitter before the box. */
 SIMD void set_up_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile, int first,
 		      struct rays *rays)

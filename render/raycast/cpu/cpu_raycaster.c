@@ -281,23 +281,27 @@ static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
 
 /* Fill in a level of detail, in its own voxel coordinates. */
 static void fill_cast_volume(const struct cpu_raycaster *cpu, int index,
-			     const struct gz_clip_box *clip, struct gz_cast *cast)
+			     const struct gz_clip_region *clip, struct gz_cast *cast)
 {
+	static const double corner[3] = { 0, 0, 0 };
 	const struct gz_level *level = &cpu->detail.levels.level[index];
 	const struct gz_macrocells *cells = &cpu->detail.cells[index];
 	const int32_t cell_strides[3] = { 1, cells->dims[0], cells->dims[0] * cells->dims[1] };
-	double half[3];
+	struct gz_clip_bounds bounds;
+	double half[3], box[3];
 	gz_volume_half_extent(cpu->volume, half);
+	for (int axis = 0; axis < 3; axis++)
+		box[axis] = (double)cpu->volume->dims[axis] / level->factor[axis];
+	gz_clip_region_place(clip, box, corner, &bounds);
 	gz_cast_fill_voxels(&level->volume, cast);
 	cast->reach = cells->reach;
 	for (int axis = 0; axis < 3; axis++) {
-		const double box = (double)cpu->volume->dims[axis] / level->factor[axis];
-		cast->box[axis] = (float)box;
-		cast->clip_least[axis] = (float)(clip->least[axis] * box);
-		cast->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
+		cast->box[axis] = (float)box[axis];
+		cast->clip_least[axis] = (float)bounds.least[axis];
+		cast->clip_greatest[axis] = (float)bounds.greatest[axis];
 		cast->cell_last[axis] = (float)(cells->dims[axis] - 1);
 		cast->cell_stride[axis] = cell_strides[axis];
-		cast->world_per_voxel[axis] = (float)(2 * half[axis] / box);
+		cast->world_per_voxel[axis] = (float)(2 * half[axis] / box[axis]);
 	}
 }
 

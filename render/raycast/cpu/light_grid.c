@@ -157,7 +157,7 @@ static bool same_key(const struct gz_light_grid_key *a, const struct gz_light_gr
 	       a->everywhere == b->everywhere && a->towards[0] == b->towards[0] &&
 	       a->towards[1] == b->towards[1] && a->towards[2] == b->towards[2] &&
 	       memcmp(a->shades, b->shades, sizeof a->shades) == 0 &&
-	       gz_clip_box_same(&a->clip, &b->clip);
+	       gz_clip_region_same(&a->clip, &b->clip);
 }
 
 /* Whether the grid that is there is the one that is asked for. */

@@ -12,7 +12,7 @@
 
 #include "base/result.h"
 #include "base/workers.h"
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/raycast/cpu/light_walk.h"
 #include "render/raycast/shared/macrocells.h"
 #include "render/raycast/shared/shadow_cells.h"
@@ -22,7 +22,7 @@
 struct gz_light_grid_key {
 	int steps;
 	float reach, towards[3];
-	struct gz_clip_box clip;
+	struct gz_clip_region clip;
 	bool nearest, everywhere;
 	uint64_t shades[GZ_SHADES_MAX]; /**< revisions; 0: none */
 };

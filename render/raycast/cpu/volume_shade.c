@@ -64,14 +64,17 @@ enum gz_result gz_volume_shade_make(const struct gz_lighting *lighting,
 		gz_light_walk_make(lighting, arriving, rays, ray_frame, log, &shade->walk);
 	if (result != GZ_OK)
 		return result;
+	static const double first_datum[3] = { -0.5, -0.5, -0.5 };
+	const double dims[3] = { volume->dims[0], volume->dims[1], volume->dims[2] };
+	struct gz_clip_bounds bounds;
 	double half[3];
 	gz_volume_half_extent(volume, half);
+	gz_clip_region_place(&rays->clip, dims, first_datum, &bounds);
 	for (int axis = 0; axis < 3; axis++) {
-		const double dim = volume->dims[axis];
-		shade->scale[axis] = (float)(dim / (2 * half[axis]));
-		shade->bias[axis] = (float)(dim / 2 - 0.5);
-		shade->least[axis] = (float)(rays->clip.least[axis] * dim - 0.5);
-		shade->greatest[axis] = (float)(rays->clip.greatest[axis] * dim - 0.5);
+		shade->scale[axis] = (float)(dims[axis] / (2 * half[axis]));
+		shade->bias[axis] = (float)(dims[axis] / 2 - 0.5);
+		shade->least[axis] = (float)bounds.least[axis];
+		shade->greatest[axis] = (float)bounds.greatest[axis];
 	}
 	shade->lengths_per_world = (float)(1 / gz_volume_voxel_length(volume));
 	/* The whole way through the box counts, though steps begin before it. */

@@ -15,13 +15,13 @@ struct gz_volume_shade {
 	struct gz_light_walk walk;
 	/** From the world to voxels counted from the first datum: at * scale + bias. */
 	float scale[3], bias[3];
-	float least[3], greatest[3]; /**< of the clip box, counted from the first datum */
+	float least[3], greatest[3]; /**< of the clip region, counted from the first datum */
 	float lengths_per_world;     /**< voxel lengths of a world unit */
 };
 
 /**
  * Make the shade of a volume: struct gz_light has the formula of the steps, which begin where the
- * way to the light enters the clip box, and no nearer than GZ_SHADOW_START.
+ * way to the light enters the clip region, and no nearer than GZ_SHADOW_START.
  *
  * @param lighting, arriving, rays, ray_frame, log  as for gz_light_walk_make()
  * @param[out] shade      what @p out_shade reads; borrows what @p lighting holds

@@ -385,16 +385,21 @@ static void fill_block_rays(const struct gz_gl_scene *scene, const int factor[3]
 }
 
 static void fill_block_volume(const struct gz_gl_scene *scene, int index,
-			      const struct gz_clip_box *clip, struct gz_gl_cast_block *block)
+			      const struct gz_clip_region *clip, struct gz_gl_cast_block *block)
 {
+	static const double corner[3] = { 0, 0, 0 };
 	const struct gz_level *level = &scene->detail.levels.level[index];
+	struct gz_clip_bounds bounds;
+	double box[3];
+	for (int axis = 0; axis < 3; axis++)
+		box[axis] = (double)scene->volume->dims[axis] / level->factor[axis];
+	gz_clip_region_place(clip, box, corner, &bounds);
 	for (int axis = 0; axis < 3; axis++) {
 		const int dim = level->volume.dims[axis];
-		const double box = (double)scene->volume->dims[axis] / level->factor[axis];
 		block->dims[axis] = (float)dim;
-		block->box[axis] = (float)box;
-		block->clip_least[axis] = (float)(clip->least[axis] * box);
-		block->clip_greatest[axis] = (float)(clip->greatest[axis] * box);
+		block->box[axis] = (float)box[axis];
+		block->clip_least[axis] = (float)bounds.least[axis];
+		block->clip_greatest[axis] = (float)bounds.greatest[axis];
 		block->cell_counts[axis] = (float)scene->detail.cells[index].dims[axis];
 	}
 }

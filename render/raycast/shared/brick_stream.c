@@ -17,7 +17,7 @@ struct brick_scene {
 	const struct gz_brick_entry *entries; /* by a brick's number; only their ranges are read */
 	const struct gz_transfer_table *table;
 	const struct gz_camera *camera;
-	const struct gz_clip_box *clip;
+	const struct gz_clip_region *clip;
 	int width, height;          /* of the picture, px */
 	const double *focus_px;     /* x, y of the gaze */
 	const uint8_t *block_level; /* the finest level that rays of each block take, row by row;
@@ -32,7 +32,7 @@ struct brick_scene {
  * near end. Chosen: decides only between bricks that otherwise weigh the same. */
 #define FAR_SHARE 0.5
 
-/* Voxels outside the clip box that samples within it read, for interpolation and gradients. */
+/* Voxels outside the clip region that samples within it read, for interpolation and gradients. */
 #define CLIP_MARGIN_VOXELS 2
 
 struct want_search {
@@ -44,7 +44,8 @@ struct want_search {
 	double pixel_per_world; /* at depth 1; orthographic: at every depth */
 	bool perspective;
 	double half[3], longest; /* half extent of the volume; its longest edge, mm */
-	double near;             /* depth at which the volume begins */
+	struct gz_clip_bounds shown;
+	double near; /* depth at which the volume begins */
 	enum gz_result result;
 };
 
@@ -94,9 +95,14 @@ static enum gz_result begin_search(struct want_search *search)
 	search->pixel_per_world = (search->perspective ? along : 1) / gz_length3(right);
 	gz_volume_half_extent(scene->volume, search->half);
 	search->longest = 0;
-	for (int axis = 0; axis < 3; axis++)
+	double edges[3], corner[3];
+	for (int axis = 0; axis < 3; axis++) {
 		search->longest = fmax(search->longest,
 				       scene->volume->dims[axis] * scene->volume->spacing[axis]);
+		corner[axis] = -search->half[axis];
+		edges[axis] = 2 * search->half[axis];
+	}
+	gz_clip_region_place(scene->clip, edges, corner, &search->shown);
 	const double centre[3] = { -search->origin[0], -search->origin[1], -search->origin[2] };
 	search->near = fmax(0, gz_dot3(centre, search->forward) - gz_length3(search->half));
 	return GZ_OK;
@@ -194,12 +200,11 @@ static double weigh_brick(const struct want_search *search, int level,
 	       (1 + FAR_SHARE * fmin(fmax(deep, 0), 1));
 }
 
-/* The ball around the part of a brick within the clip box; false if there is no such part. */
+/* The ball around the part of a brick within the clip region; false if there is no such part. */
 static bool ball_of(const struct want_search *search, int level, const int brick[3],
 		    double out_centre[3], double *out_radius)
 {
 	const struct gz_brick_level *l = &search->scene->layout->levels[level];
-	const struct gz_clip_box *clip = search->scene->clip;
 	double radius2 = 0;
 	for (int axis = 0; axis < 3; axis++) {
 		const double half = search->half[axis];
@@ -207,9 +212,9 @@ static bool ball_of(const struct want_search *search, int level, const int brick
 			ldexp(2 * half / search->scene->volume->dims[axis], l->halvings[axis]);
 		const double begin = voxel * GZ_BRICK_EDGE * brick[axis] - half;
 		const double margin = CLIP_MARGIN_VOXELS * voxel;
-		const double low = fmax(begin, (2 * clip->least[axis] - 1) * half - margin);
+		const double low = fmax(begin, search->shown.least[axis] - margin);
 		const double high = fmin(fmin(begin + voxel * GZ_BRICK_EDGE, half),
-					 (2 * clip->greatest[axis] - 1) * half + margin);
+					 search->shown.greatest[axis] + margin);
 		if (low >= high)
 			return false;
 		out_centre[axis] = (low + high) / 2;
@@ -385,7 +390,7 @@ struct gz_brick_stream_key gz_brick_stream_key_of(const struct gz_camera *camera
 
 static bool is_same_key(const struct gz_brick_stream_key *a, const struct gz_brick_stream_key *b)
 {
-	return gz_camera_same(&a->camera, &b->camera) && gz_clip_box_same(&a->clip, &b->clip) &&
+	return gz_camera_same(&a->camera, &b->camera) && gz_clip_region_same(&a->clip, &b->clip) &&
 	       a->focus_px[0] == b->focus_px[0] && a->focus_px[1] == b->focus_px[1] &&
 	       a->pixel_lengths == b->pixel_lengths &&
 	       a->ray_sampling_rate == b->ray_sampling_rate && a->plan == b->plan &&

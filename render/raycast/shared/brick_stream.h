@@ -29,7 +29,7 @@ struct gz_brick_wants {
 /** What wants depend on besides the volume and the transfer function. */
 struct gz_brick_stream_key {
 	struct gz_camera camera;
-	struct gz_clip_box clip;
+	struct gz_clip_region clip;
 	double focus_px[2], pixel_lengths, ray_sampling_rate;
 	const struct gz_plan *plan; /**< compared, not followed */
 	uint64_t plan_serial;

@@ -31,7 +31,7 @@ static enum gz_result prepare_occlusion(struct gz_lighting *lighting,
 		return GZ_ERR_UNSUPPORTED;
 	}
 	if (lighting->current && lighting->radius == radius &&
-	    gz_clip_box_same(&lighting->clip, &rays->clip))
+	    gz_clip_region_same(&lighting->clip, &rays->clip))
 		return GZ_OK;
 	lighting->current = false;
 	const int64_t start_ns = gz_clock_now_ns();
@@ -58,7 +58,7 @@ static enum gz_result prepare_shadows(struct gz_lighting *lighting,
 			    "memory: set light.shadow_steps to 0");
 		return GZ_ERR_UNSUPPORTED;
 	}
-	if (lighting->shadows_current && gz_clip_box_same(&lighting->shadow_clip, &rays->clip))
+	if (lighting->shadows_current && gz_clip_region_same(&lighting->shadow_clip, &rays->clip))
 		return GZ_OK;
 	lighting->shadows_current = false;
 	const int64_t start_ns = gz_clock_now_ns();
@@ -129,19 +129,21 @@ static void fill_shadow(const struct gz_volume *volume, const int factor[3],
 			const struct gz_ray_params *rays, const double towards[3],
 			struct gz_cast_shadow *shadow)
 {
-	double half[3], through = INFINITY;
+	static const double first_datum[3] = { -0.5, -0.5, -0.5 };
+	double half[3], box[3], through = INFINITY;
 	const double voxel_length = gz_volume_voxel_length(volume);
+	struct gz_clip_bounds clip;
 	gz_volume_half_extent(volume, half);
+	for (int axis = 0; axis < 3; axis++)
+		box[axis] = (double)volume->dims[axis] / factor[axis];
+	gz_clip_region_place(&rays->clip, box, first_datum, &clip);
 	for (int axis = 0; axis < 3; axis++) {
-		const double box = (double)volume->dims[axis] / factor[axis];
-		const double clip[2] = { rays->clip.least[axis] * box,
-					 rays->clip.greatest[axis] * box };
-		const double raw = towards[axis] * voxel_length * box / (2 * half[axis]);
+		const double raw = towards[axis] * voxel_length * box[axis] / (2 * half[axis]);
 		const double step = fabs(raw) < 1e-9 ? 1e-9 : raw;
 		shadow->towards[axis] = (float)step;
 		shadow->inverse[axis] = (float)(1 / step);
-		shadow->exit[axis] = (float)(clip[step > 0] - 0.5);
-		through = fmin(through, box / fabs(step));
+		shadow->exit[axis] = (float)(step > 0 ? clip.greatest : clip.least)[axis];
+		through = fmin(through, box[axis] / fabs(step));
 	}
 	shadow->steps = rays->light.shadow_steps;
 	shadow->reach =

@@ -33,7 +33,7 @@ struct gz_cast_shadow {
 	float reach;      /**< of the last step's end */
 	float towards[3]; /**< one voxel length towards the light; no component is 0 */
 	float inverse[3]; /**< 1 / towards */
-	float exit[3];    /**< the faces of the clip box that face the light */
+	float exit[3];    /**< the faces of the clip region that face the light */
 	int levels;
 	struct gz_cast_cells level[GZ_SHADOW_LEVELS];
 	float kept_per_length[GZ_SHADOW_LEVELS]; /**< turns a cell of the level into powers of two
@@ -62,10 +62,10 @@ struct gz_lighting {
 	uint64_t serial; /**< increased whenever occlusion is made */
 	bool current;    /**< occlusion is for the present transfer function, radius and clip */
 	double radius;
-	struct gz_clip_box clip;
+	struct gz_clip_region clip;
 	struct gz_shadow_cells shadows;
 	bool shadows_current; /**< shadows are for the present transfer function and shadow_clip */
-	struct gz_clip_box shadow_clip;
+	struct gz_clip_region shadow_clip;
 	double spent_ms;                /**< making both, until gz_lighting_take_spent_ms() */
 	const struct gz_volume *volume; /**< of gz_lighting_prepare(), borrowed */
 	const struct gz_transfer_table *table; /**< of gz_lighting_prepare(), borrowed */

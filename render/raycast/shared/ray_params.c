@@ -71,7 +71,7 @@ struct gz_ray_params gz_ray_params_default(void)
 bool gz_ray_params_valid(const struct gz_ray_params *rays)
 {
 	return gz_options_hold(gz_ray_options, gz_ray_option_count, rays) &&
-	       gz_light_valid(&rays->light) && gz_clip_box_valid(&rays->clip) &&
+	       gz_light_valid(&rays->light) && gz_clip_region_valid(&rays->clip) &&
 	       gz_options_hold(gz_surface_look_options, gz_surface_look_option_count,
 			       &rays->surface) &&
 	       gz_environment_valid(&rays->environment) &&
@@ -106,7 +106,7 @@ bool gz_ray_params_same(const struct gz_ray_params *a, const struct gz_ray_param
 {
 	return gz_options_same(gz_ray_options, gz_ray_option_count, a, b) &&
 	       gz_options_same(gz_light_options, gz_light_option_count, &a->light, &b->light) &&
-	       gz_clip_box_same(&a->clip, &b->clip) &&
+	       gz_clip_region_same(&a->clip, &b->clip) &&
 	       gz_options_same(gz_surface_look_options, gz_surface_look_option_count, &a->surface,
 			       &b->surface) &&
 	       gz_options_same(gz_environment_options, gz_environment_option_count, &a->environment,

@@ -1,6 +1,6 @@
 /**
  * @file
- * How rays are integrated: the section [render] of a scene with its light and clip box, the same
+ * How rays are integrated: the section [render] of a scene with its light and clip region, the same
  * for every plan and backend; and a picture's rays in the coordinates that the kernels use.
  */
 #ifndef GZ_RENDER_RAYCAST_SHARED_RAY_PARAMS_H
@@ -10,7 +10,7 @@
 #include <stddef.h>
 
 #include "base/option.h"
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/data/volume.h"
 #include "render/illustration/illustration_look.h"
 #include "render/light/environment.h"
@@ -56,7 +56,7 @@ struct gz_ray_params {
 				     behind it would come through; else when none would */
 	double background[3];     /**< [0, 1] each */
 	struct gz_light light;
-	struct gz_clip_box clip;
+	struct gz_clip_region clip;
 	struct gz_environment environment;
 	struct gz_surface_look surface;           /**< for techniques that show surfaces */
 	struct gz_slicing slicing;                /**< for techniques that draw slices */

@@ -108,8 +108,8 @@ enum gz_result gz_raycaster_draw(struct gz_raycaster *raycaster, const struct gz
 
 /**
  * Say what the volume keeps back of the light: with light.shadow_steps as many steps from each
- * place, GZ_SHADOW_START voxel lengths away from it or where the way enters the clip box, whichever
- * is farther. Without, nothing.
+ * place, GZ_SHADOW_START voxel lengths away from it or where the way enters the clip region,
+ * whichever is farther. Without, nothing.
  *
  * @param[out] out_shade  borrows from the ray caster until gz_raycaster_draw() of the same shot
  * @return the failures of gz_raycaster_draw() but GZ_ERR_NO_DEVICE

@@ -14,7 +14,7 @@ struct shadow_job {
 	const struct gz_transfer_table *table;
 	struct gz_shadow_cells *cells;
 	int index;                              /* of the level */
-	int from[3], to[3];                     /* voxels within the clip box, [from, to) */
+	int from[3], to[3];                     /* voxels within the clip region, [from, to) */
 	float by_entry[GZ_TRANSFER_TABLE_MOST]; /* what a voxel lets through, by its entry */
 	float by_value[STORED_VALUES];          /* the same by its stored value */
 };
@@ -102,16 +102,6 @@ static void shadow_rows(struct gz_workers *workers, struct shadow_job *job)
 		shadow_row(job, i, 0);
 }
 
-static void find_shadow_clip(struct shadow_job *job, const struct gz_clip_box *clip)
-{
-	for (int axis = 0; axis < 3; axis++) {
-		const int dim = job->volume->dims[axis];
-		job->from[axis] = (int)ceil(clip->least[axis] * dim - 0.5);
-		job->to[axis] = (int)floor(clip->greatest[axis] * dim - 0.5) + 1;
-		job->to[axis] = job->to[axis] < dim ? job->to[axis] : dim;
-	}
-}
-
 static void find_voxels_through(struct shadow_job *job)
 {
 	for (int i = 0; i < job->table->count; i++)
@@ -151,7 +141,7 @@ static size_t lay_out_levels(const struct gz_volume *volume, struct gz_shadow_ce
 
 enum gz_result gz_shadow_cells_make(const struct gz_volume *volume,
 				    const struct gz_transfer_table *table,
-				    const struct gz_clip_box *clip, struct gz_workers *workers,
+				    const struct gz_clip_region *clip, struct gz_workers *workers,
 				    struct gz_shadow_cells *cells)
 {
 	struct shadow_job *job = calloc(1, sizeof *job);
@@ -164,7 +154,7 @@ enum gz_result gz_shadow_cells_make(const struct gz_volume *volume,
 	job->volume = volume;
 	job->table = table;
 	job->cells = cells;
-	find_shadow_clip(job, clip);
+	gz_clip_region_voxels(clip, volume->dims, job->from, job->to);
 	find_voxels_through(job);
 	for (; job->index < cells->count; job->index++)
 		shadow_rows(workers, job);

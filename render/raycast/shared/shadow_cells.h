@@ -2,13 +2,13 @@
  * @file
  * How transparent blocks of voxels are, from fine blocks to coarse ones: what long steps towards
  * the light read instead of voxels, so that a step does not miss what lies between its samples.
- * Made for a transfer function and a clip box.
+ * Made for a transfer function and a clip region.
  *
  * Level i has cells of the nominal length 2^(i + 1) voxel lengths. Along each axis the edge of a
  * cell, in voxels, is the greatest power of two that is no longer in space, at least 1. A cell is
  * made of eight children, two along each axis; children of level 0 are voxels, whose nominal length
  * is 1. Along an axis where the edge does not grow, a child stands for both. What lies outside the
- * box is clear, and so are voxels whose middle lies outside the clip box.
+ * box is clear, and so are voxels whose middle lies outside the clip region.
  *
  * With t(child) the share of light that comes through the child's nominal length, a cell lets
  * through the mean over the three axes, and over the four columns along each, of t(one) t(other).
@@ -23,7 +23,7 @@
 
 #include "base/result.h"
 #include "base/workers.h"
-#include "render/data/clip_box.h"
+#include "render/data/clip_region.h"
 #include "render/data/volume.h"
 #include "render/transfer/transfer_table.h"
 
@@ -64,7 +64,7 @@ struct gz_shadow_cells {
  */
 enum gz_result gz_shadow_cells_make(const struct gz_volume *volume,
 				    const struct gz_transfer_table *table,
-				    const struct gz_clip_box *clip, struct gz_workers *workers,
+				    const struct gz_clip_region *clip, struct gz_workers *workers,
 				    struct gz_shadow_cells *cells);
 
 /** Free and zero. */

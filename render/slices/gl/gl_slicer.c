@@ -223,12 +223,12 @@ static enum gz_result cut_volume(struct slicing *slicing, const struct gz_ray_fr
 	struct gz_gl_slicer *slicer = slicing->slicer;
 	struct gz_slice_request request = { .rays = *world, .count = slicing->rays->slicing.count };
 	gz_volume_half_extent(slicer->scene.volume, request.half);
-	const struct gz_clip_box *clip = &slicing->rays->clip;
+	double edges[3], corner[3];
 	for (int axis = 0; axis < 3; axis++) {
-		const double edge = 2 * request.half[axis];
-		request.least[axis] = clip->least[axis] * edge - request.half[axis];
-		request.greatest[axis] = clip->greatest[axis] * edge - request.half[axis];
+		edges[axis] = 2 * request.half[axis];
+		corner[axis] = -request.half[axis];
 	}
+	gz_clip_region_place(&slicing->rays->clip, edges, corner, &request.shown);
 	const enum gz_result result = gz_slice_cut_make(&request, &slicer->cut);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(slicer->log, "no memory for %d slices", request.count);

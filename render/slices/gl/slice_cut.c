@@ -121,8 +121,9 @@ static bool same_request(const struct gz_slice_request *a, const struct gz_slice
 	       same_numbers(a->rays.direction00, b->rays.direction00, 3) &&
 	       same_numbers(a->rays.direction_dx, b->rays.direction_dx, 3) &&
 	       same_numbers(a->rays.direction_dy, b->rays.direction_dy, 3) &&
-	       same_numbers(a->half, b->half, 3) && same_numbers(a->least, b->least, 3) &&
-	       same_numbers(a->greatest, b->greatest, 3) && a->count == b->count;
+	       same_numbers(a->half, b->half, 3) && a->count == b->count &&
+	       same_numbers(a->shown.least, b->shown.least, 3) &&
+	       same_numbers(a->shown.greatest, b->shown.greatest, 3);
 }
 
 /* From the nearest to the farthest corner, but not behind the eye. */
@@ -152,7 +153,7 @@ enum gz_result gz_slice_cut_make(const struct gz_slice_request *request, struct 
 		return result;
 	const double opposite[3] = { -request->half[0], -request->half[1], -request->half[2] };
 	project_box(&inverse, opposite, request->half, whole);
-	project_box(&inverse, request->least, request->greatest, shown);
+	project_box(&inverse, request->shown.least, request->shown.greatest, shown);
 	find_depths(whole, &cut->near, &far);
 	cut->distance = (far - cut->near) / request->count;
 	if (cut->distance > 0)

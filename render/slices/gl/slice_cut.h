@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "base/result.h"
+#include "render/data/clip_region.h"
 #include "render/picture/camera.h"
 
 /** A box and a plane share at most so many corners. */
@@ -28,10 +29,10 @@ struct gz_slice_corner {
 
 /** What is cut. */
 struct gz_slice_request {
-	struct gz_ray_frame rays;     /**< of a picture, in world units */
-	double half[3];               /**< half the edges of the box, whose centre is the origin */
-	double least[3], greatest[3]; /**< corners of the part that is shown, world units */
-	int count;                    /**< slices of the whole box, at least 1 */
+	struct gz_ray_frame rays;    /**< of a picture, in world units */
+	double half[3];              /**< half the edges of the box, whose centre is the origin */
+	struct gz_clip_bounds shown; /**< the part that is shown, world units */
+	int count;                   /**< slices of the whole box, at least 1 */
 };
 
 /** The slices of a box, nearest first. Zero-initialised is empty; keep it from frame to frame. */

@@ -280,7 +280,7 @@ SIMD void follow_through_glass(const struct gz_surface_cast *cast, bool coherent
 	}
 }
 
-/* Aim rays from some places to the light, as far as the clip box reaches. */
+/* Aim rays from some places to the light, as far as the clip region reaches. */
 SIMD void aim_from_places(const struct gz_surface_cast *cast, const struct gz_shade_places *places,
 			  int first, struct packet *packet)
 {

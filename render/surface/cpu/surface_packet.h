@@ -39,7 +39,7 @@ SIMD void put_lanes(vm mask, vf a, float *out)
 	vf_store(out, vf_select(mask, a, vf_load(out)));
 }
 
-/* Cut rays by the clip box. Returns the lanes of which something is left. */
+/* Cut rays by the clip region. Returns the lanes of which something is left. */
 SIMD vm clip_lanes(const struct gz_surface_cast *cast, const vf origin[3], const vf direction[3],
 		   vf *from, vf *to)
 {

@@ -1,7 +1,7 @@
 /**
  * @file
  * The shadow map: the depths of all surfaces, seen from the light. It is drawn again when the
- * light, the clip box, the meshes or its size change. All calls need a current context.
+ * light, the clip region, the meshes or its size change. All calls need a current context.
  */
 #ifndef GZ_RENDER_SURFACE_GL_RASTER_SHADOW_H
 #define GZ_RENDER_SURFACE_GL_RASTER_SHADOW_H

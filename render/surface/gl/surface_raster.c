@@ -160,7 +160,7 @@ static enum gz_result prepare_meshes(struct rastering *rastering)
 	return result;
 }
 
-/* The part of the meshes' box that the clip box leaves. */
+/* The part of the meshes' box that the clip region leaves. */
 static struct gz_raster_box shown_box(const struct gz_surface_raster *raster,
 				      const struct gz_surface_frame *frame)
 {

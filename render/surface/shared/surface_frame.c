@@ -9,17 +9,21 @@
 /* Least colour of glass, so that its logarithm is finite. Chosen: no pixel shows less. */
 #define BLACKEST 1e-6
 
-static void fill_clip(const struct gz_surface_meshes *meshes, const struct gz_clip_box *clip,
+static void fill_clip(const struct gz_surface_meshes *meshes, const struct gz_clip_region *clip,
 		      struct gz_surface_frame *frame)
 {
-	double half[3];
+	struct gz_clip_bounds bounds;
+	double half[3], edges[3], corner[3];
 	gz_volume_half_extent(meshes->items[0].object.volume, half);
 	for (int axis = 0; axis < 3; axis++) {
-		const double edge = 2 * half[axis] * meshes->world_mm;
-		frame->clipped =
-			frame->clipped || clip->least[axis] > 0 || clip->greatest[axis] < 1;
-		frame->clip_least[axis] = (float)((clip->least[axis] - 0.5) * edge);
-		frame->clip_greatest[axis] = (float)((clip->greatest[axis] - 0.5) * edge);
+		corner[axis] = -half[axis] * meshes->world_mm;
+		edges[axis] = -2 * corner[axis];
+	}
+	gz_clip_region_place(clip, edges, corner, &bounds);
+	frame->clipped = !gz_clip_region_same(clip, &gz_clip_whole);
+	for (int axis = 0; axis < 3; axis++) {
+		frame->clip_least[axis] = (float)bounds.least[axis];
+		frame->clip_greatest[axis] = (float)bounds.greatest[axis];
 	}
 }
 

@@ -24,7 +24,7 @@ struct gz_surface_planes {
 /** One picture to draw. All pointers are borrowed. */
 struct gz_surface_shot {
 	const struct gz_camera *camera;
-	const struct gz_ray_params *rays; /**< background, light, clip box and surface count */
+	const struct gz_ray_params *rays; /**< background, light, clip region and surface count */
 	const struct gz_plan *plan;
 	/** Takes what lies nearer than what it has; NULL: not wanted. Only rays fill it. */
 	struct gz_ray_hits *hits;
