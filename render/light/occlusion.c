@@ -42,7 +42,7 @@ struct job {
 	const struct gz_volume *volume;
 	const struct gz_transfer_table *table;
 	struct gz_occlusion *occlusion;
-	int from[3], to[3];                        /* voxels within the clip region, [from, to) */
+	struct gz_clip_voxels shown;
 	uint16_t by_entry[GZ_TRANSFER_TABLE_MOST]; /* how much a voxel fills, by its table entry */
 	uint16_t by_value[INTEGER_VALUES];         /* how much a voxel fills, by its stored value */
 	int axis;                                  /* along which cells are weighted */
@@ -84,19 +84,21 @@ static uint32_t sum_row(const struct job *job, size_t from, int count)
 static uint16_t fill_cell(const struct job *job, const int cell[3])
 {
 	const int *dims = job->volume->dims, *edge = job->occlusion->edge;
+	const struct gz_clip_voxels *shown = &job->shown;
 	int from[3], to[3];
 	for (int axis = 0; axis < 3; axis++) {
 		from[axis] = cell[axis] * edge[axis];
 		to[axis] = from[axis] + edge[axis];
-		from[axis] = from[axis] > job->from[axis] ? from[axis] : job->from[axis];
-		to[axis] = to[axis] < job->to[axis] ? to[axis] : job->to[axis];
+		from[axis] = from[axis] > shown->from[axis] ? from[axis] : shown->from[axis];
+		to[axis] = to[axis] < shown->to[axis] ? to[axis] : shown->to[axis];
 	}
 	uint32_t sum = 0;
 	for (int z = from[2]; z < to[2]; z++)
 		for (int y = from[1]; y < to[1]; y++) {
 			const size_t row = (size_t)z * (size_t)dims[1] + (size_t)y;
-			sum += sum_row(job, row * (size_t)dims[0] + (size_t)from[0],
-				       to[0] - from[0]);
+			int first = from[0], end = to[0];
+			gz_clip_voxels_keep(shown, y, z, &first, &end);
+			sum += sum_row(job, row * (size_t)dims[0] + (size_t)first, end - first);
 		}
 	const uint32_t voxels = (uint32_t)(edge[0] * edge[1] * edge[2]);
 	return (uint16_t)((sum + voxels / 2) / voxels);
@@ -208,7 +210,7 @@ enum gz_result gz_occlusion_make(const struct gz_volume *volume,
 	job->table = table;
 	job->occlusion = occlusion;
 	find_filled(job, radius);
-	gz_clip_region_voxels(clip, volume->dims, job->from, job->to);
+	gz_clip_region_voxels(clip, volume, &job->shown);
 	make_grid(job, radius, workers);
 	free(job);
 	return GZ_OK;

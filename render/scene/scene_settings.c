@@ -315,6 +315,16 @@ static bool distances_valid(const struct gz_scene_settings *settings, const char
 	return false;
 }
 
+static const char *what_is_invalid(const struct gz_ray_params *rays)
+{
+	const struct gz_clip_region *clip = &rays->clip;
+	for (int axis = 0; axis < 3; axis++)
+		if (!(clip->least[axis] < clip->greatest[axis]))
+			return "clip.least must be below clip.greatest along each axis";
+	return gz_clip_region_valid(clip) ? "light.direction must not be 0 0 0"
+					  : "clip.normal must not be 0 0 0";
+}
+
 enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings, const char *name,
 				       const struct gz_log *log)
 {
@@ -335,13 +345,7 @@ enum gz_result gz_scene_settings_check(const struct gz_scene_settings *settings,
 				name);
 		return GZ_OK;
 	}
-	const struct gz_clip_region *clip = &settings->rays.clip;
-	bool below = true;
-	for (int axis = 0; axis < 3; axis++)
-		below = below && clip->least[axis] < clip->greatest[axis];
-	gz_err(log, "%s: %s", name,
-	       below ? "light.direction must not be 0 0 0"
-		     : "clip.least must be below clip.greatest along each axis");
+	gz_err(log, "%s: %s", name, what_is_invalid(&settings->rays));
 	return GZ_ERR_FORMAT;
 }
 

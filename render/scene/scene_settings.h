@@ -171,8 +171,8 @@ const char *gz_scene_transfer_name(const struct gz_scene_settings *settings);
 
 /**
  * Check what single values cannot show: that the camera looks somewhere, the clip box is not empty,
- * the light has a direction and stored views are valid. Does not check volume and display. Warns if
- * the camera's up vector has no effect; gz_camera_rays() then replaces it.
+ * the clip plane and the light have a direction and stored views are valid. Does not check volume
+ * and display. Warns if the camera's up vector has no effect; gz_camera_rays() then replaces it.
  *
  * @param name  the settings' source in messages
  * @param log   may be NULL

@@ -268,7 +268,7 @@ static bool begin_walk(const struct gz_volume *volume, const struct gz_transfer 
 	struct gz_clip_bounds bounds;
 	double ends[2], voxels = 0;
 	box_ray(volume, ray->origin, ray->direction, walk.from, walk.along);
-	gz_clip_region_place(&ray->clip, one, none, &bounds);
+	gz_clip_region_place(&ray->clip, volume, one, none, &bounds);
 	if (!gz_clip_bounds_cross(&bounds, walk.from, walk.along, ends) || ends[0] >= ray->until)
 		return false;
 	const double voxel_mm =

@@ -28,6 +28,7 @@ struct search {
 	double low, scale; /* entry of seen = (stored value - low) * scale */
 	int step;
 	int from[3], to[3];                    /* cells of the grid: from is in, to is not */
+	struct gz_clip_bounds shown;           /* fractions of the box */
 	uint64_t count;                        /* seen */
 	uint64_t at[3][GZ_VOLUME_DIM_MAX + 1]; /* of them, in each cell along an axis */
 };
@@ -68,6 +69,11 @@ static double stored_at(const struct gz_volume *volume, size_t voxel)
 static bool is_seen(const struct search *search, const int cell[3])
 {
 	const int *dims = search->volume->dims;
+	double middle[3]; /* of the voxel that stands for the cell */
+	for (int axis = 0; axis < 3; axis++)
+		middle[axis] = (cell[axis] * search->step + 0.5) / dims[axis];
+	if (gz_clip_beyond(&search->shown, middle) > 0)
+		return false;
 	const size_t at[3] = { (size_t)(cell[0] * search->step), (size_t)(cell[1] * search->step),
 			       (size_t)(cell[2] * search->step) };
 	const size_t voxel = (at[2] * (size_t)dims[1] + at[1]) * (size_t)dims[0] + at[0];
@@ -92,7 +98,9 @@ static void count_seen(struct search *search)
 /* Let cells be so wide that there are not too many, and leave out those outside. */
 static void choose_grid(struct search *search, const struct gz_clip_region *within)
 {
+	static const double one[3] = { 1, 1, 1 }, none[3] = { 0, 0, 0 };
 	const int *dims = search->volume->dims;
+	gz_clip_region_place(within, search->volume, one, none, &search->shown);
 	search->step = 1;
 	while (gz_volume_voxel_count(search->volume) /
 		       ((size_t)search->step * (size_t)search->step * (size_t)search->step) >

@@ -14,8 +14,8 @@
  * million voxels on a grid are looked at.
  *
  * @param within  what lies outside is not shown
- * @param[out] out_content  within @p within; the same if the volume has bricks, of which not all
- * are in memory, or if nothing is seen of it
+ * @param[out] out_content  a box within that of @p within, with the same plane; the same if the
+ * volume has bricks, of which not all are in memory, or if nothing is seen of it
  *
  * Threads: any. Takes some 10 ms.
  */

@@ -222,6 +222,9 @@ static void trace(const struct gz_volume *volume, const struct gz_level *level,
 		cut(origin[axis], direction[axis], (rays->clip.least[axis] - 0.5) * size,
 		    (rays->clip.greatest[axis] - 0.5) * size, shown);
 	}
+	double normal[3];
+	const double greatest = oracle_plane(volume, rays, normal);
+	cut(gz_dot3(normal, origin), gz_dot3(normal, direction), -1e9, greatest, shown);
 
 	const double first = volume->slope * volume->stored_min + volume->intercept;
 	const double second = volume->slope * volume->stored_max + volume->intercept;

@@ -128,6 +128,44 @@ static double in_cells(const double *cells, const int dims[3], const int edge[3]
 	return sum;
 }
 
+double oracle_plane(const struct gz_volume *volume, const struct gz_ray_params *rays,
+		    double out_normal[3])
+{
+	double longest = 0, length2 = 0, least = INFINITY, greatest = -INFINITY;
+	for (int axis = 0; axis < 3; axis++) {
+		longest = fmax(longest, volume->dims[axis] * volume->spacing[axis]);
+		length2 += pow(rays->clip.normal[axis], 2);
+		out_normal[axis] = 0;
+	}
+	if (!rays->clip.plane)
+		return 1;
+	for (int axis = 0; axis < 3; axis++)
+		out_normal[axis] = rays->clip.normal[axis] / sqrt(length2);
+	for (int corner = 0; corner < 8; corner++) {
+		double along = 0;
+		for (int axis = 0; axis < 3; axis++)
+			along += out_normal[axis] * ((corner >> axis & 1) - 0.5) *
+				 volume->dims[axis] * volume->spacing[axis] / longest;
+		least = fmin(least, along);
+		greatest = fmax(greatest, along);
+	}
+	return least + rays->clip.offset * (greatest - least);
+}
+
+/* How far beyond the clip plane a place in voxel coordinates of a level lies. */
+static double beyond_plane(const struct gz_volume *volume, const int factor[3],
+			   const struct gz_ray_params *rays, const double at[3])
+{
+	double normal[3], longest = 0;
+	for (int axis = 0; axis < 3; axis++)
+		longest = fmax(longest, volume->dims[axis] * volume->spacing[axis]);
+	double along = -oracle_plane(volume, rays, normal);
+	for (int axis = 0; axis < 3; axis++)
+		along += normal[axis] * (at[axis] * factor[axis] - volume->dims[axis] / 2.0) *
+			 volume->spacing[axis] / longest;
+	return along;
+}
+
 /* The share of light that arrives at a place in voxel coordinates of the level. */
 static double arriving(const struct gz_volume *volume, const struct gz_level *level,
 		       const struct gz_transfer *transfer, const struct gz_ray_params *rays,
@@ -147,6 +185,11 @@ static double arriving(const struct gz_volume *volume, const struct gz_level *le
 		leave = fmin(leave, (end * size - at[axis]) / towards[axis]);
 		across = fmin(across, size / fabs(towards[axis]));
 	}
+	const double here = beyond_plane(volume, level->factor, rays, at);
+	const double next[3] = { at[0] + towards[0], at[1] + towards[1], at[2] + towards[2] };
+	const double nearing = beyond_plane(volume, level->factor, rays, next) - here;
+	if (nearing > 1e-12)
+		leave = fmin(leave, -here / nearing);
 	const double reach = fmax(fmin(rays->light.shadow_reach, across), start);
 	const int steps = shadows->exact_shadows ? 2000 : rays->light.shadow_steps;
 	for (int i = 0; i < steps; i++) {
@@ -303,6 +346,8 @@ static double voxel_fills(const struct gz_volume *volume, const struct gz_transf
 		if (share < rays->clip.least[axis] || share > rays->clip.greatest[axis])
 			return 0;
 	}
+	if (beyond_plane(volume, (const int[3]) { 1, 1, 1 }, rays, middle) > 0)
+		return 0;
 	const double stored = oracle_sample(volume, GZ_INTERPOLATION_NEAREST, middle);
 	gz_transfer_evaluate(transfer, value_of(volume, transfer, stored), rgba);
 	return 1 - pow(1 - rgba[3], rays->light.occlusion_radius / 2);
@@ -369,6 +414,8 @@ static double comes_through(const struct gz_volume *volume, const struct gz_tran
 		return exp2(-shadows->kept[number][(at[2] * dims[1] + at[1]) * dims[0] + at[0]]);
 	}
 	const double middle[3] = { at[0] + 0.5, at[1] + 0.5, at[2] + 0.5 };
+	if (beyond_plane(volume, (const int[3]) { 1, 1, 1 }, rays, middle) > 0)
+		return 1;
 	const struct gz_level whole = { .volume = *volume, .factor = { 1, 1, 1 } };
 	return exp2(-kept_by_volume(volume, &whole, transfer, GZ_INTERPOLATION_NEAREST, middle));
 }

@@ -24,7 +24,13 @@ struct oracle_occlusion {
 	double *arriving; /**< shares of the light in the middles of the cells of level 0 */
 };
 
-/** Make the blocks of shadows for the clip box of @p rays, and what light arrives for the camera.
+/** The clip plane of @p rays in the world: a place is cut off where its product with @p out_normal
+ * is above the level that is returned. Without a plane no place is. */
+double oracle_plane(const struct gz_volume *volume, const struct gz_ray_params *rays,
+		    double out_normal[3]);
+
+/** Make the blocks of shadows for the clip region of @p rays, and what light arrives for the
+ * camera.
  */
 void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfer *transfer,
 			 const struct gz_camera *camera, const struct gz_ray_params *rays,
@@ -33,7 +39,7 @@ void oracle_shadows_make(const struct gz_volume *volume, const struct gz_transfe
 /** Free what both hold. */
 void oracle_occlusion_free(struct oracle_occlusion *occlusion);
 
-/** Make it for the radius and the clip box of @p rays: oracle_occlusion_free(). */
+/** Make it for the radius and the clip region of @p rays: oracle_occlusion_free(). */
 struct oracle_occlusion oracle_occlusion_make(const struct gz_volume *volume,
 					      const struct gz_transfer *transfer,
 					      const struct gz_ray_params *rays);

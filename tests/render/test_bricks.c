@@ -382,6 +382,44 @@ static void what_is_clipped_away_is_not_sent_for(void **state)
 	small_scene_free(&scene);
 }
 
+static void what_the_clip_plane_cuts_off_is_not_sent_for(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(220, 200, 210, GZ_VOXEL_U8);
+	uint64_t counts[2];
+	for (int cut = 0; cut < 2; cut++) {
+		struct small_scene bricks = as_bricks(&scene, 0);
+		struct gz_raycaster *renderer = renderer_of(&bricks, "auto", false);
+		bricks.rays.clip.plane = cut;
+		memcpy(bricks.rays.clip.normal, (double[3]) { 1, 1, 0 }, 3 * sizeof(double));
+		bricks.rays.clip.offset = 0.25; /* an eighth of the box */
+		counts[cut] = sent_for(renderer, &bricks);
+		gz_raycaster_destroy(&renderer);
+		small_scene_free(&bricks);
+	}
+	if (counts[1] == 0 || 3 * counts[1] > counts[0])
+		fail_msg("%llu bricks sent for, %llu of them for a corner of the box",
+			 (unsigned long long)counts[0], (unsigned long long)counts[1]);
+	struct small_scene bricks = as_bricks(&scene, 0);
+	struct gz_raycaster *renderer = renderer_of(&bricks, "auto", true);
+	struct gz_image whole = { 0 }, image = { 0 };
+	int x = 0, y = 0;
+	scene.rays.clip.plane = true;
+	memcpy(scene.rays.clip.normal, (double[3]) { 0.5, 0.8, -0.4 }, 3 * sizeof(double));
+	scene.rays.clip.offset = 0.55;
+	bricks.rays.clip = scene.rays.clip;
+	render(&scene, "auto", true, &whole);
+	small_scene_render(renderer, &bricks, WIDTH, HEIGHT, &image, NULL);
+	const int difference = image_difference(&whole, &image, &x, &y);
+	if (difference > 1)
+		fail_msg("differs by %d at (%d, %d)", difference, x, y);
+	gz_image_free(&whole);
+	gz_image_free(&image);
+	gz_raycaster_destroy(&renderer);
+	small_scene_free(&bricks);
+	small_scene_free(&scene);
+}
+
 static void rooms_go_to_what_is_looked_at_now(void **state)
 {
 	(void)state;
@@ -489,6 +527,7 @@ TEST_SUITE(bricks)
 		cmocka_unit_test(picture_is_whole_from_the_first_and_sharper_later),
 		cmocka_unit_test(room_for_less_than_is_wanted_holds_what_weighs_most),
 		cmocka_unit_test(what_is_clipped_away_is_not_sent_for),
+		cmocka_unit_test(what_the_clip_plane_cuts_off_is_not_sent_for),
 		cmocka_unit_test(rooms_go_to_what_is_looked_at_now),
 		cmocka_unit_test(file_that_becomes_shorter_shows_the_coarse_level),
 		cmocka_unit_test(damaged_bricks_are_told_by_the_first_and_their_number),

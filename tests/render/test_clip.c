@@ -1,4 +1,4 @@
-/* The clip box, jitter and phases: where rays are cut. */
+/* The clip box, the clip plane, jitter and phases: where rays are cut. */
 #include "suite.h"
 
 #include <stddef.h>
@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "oracle_check.h"
 #include "render/plan/method.h"
 
@@ -162,6 +163,205 @@ static void clip_box_that_holds_nothing_is_refused(void **state)
 	assert_false(gz_ray_params_valid(&rays));
 }
 
+static void cut_by_plane(struct small_scene *scene, double x, double y, double z, double offset)
+{
+	scene->rays.clip.plane = true;
+	memcpy(scene->rays.clip.normal, (double[3]) { x, y, z }, 3 * sizeof(double));
+	scene->rays.clip.offset = offset;
+}
+
+static void plane_of_any_normal_equals_the_oracle(void **state)
+{
+	(void)state;
+	static const double normals[][3] = {
+		{ 1, 0, 0 },        { -1, 0, 0 },        { 0, 0.5, 0 },       { 0, 0, -1 },
+		{ 0.3, -0.5, 0.8 }, { -0.9, 0.4, -0.2 }, { 0.01, 1, -0.003 },
+	};
+	for (size_t i = 0; i < sizeof normals / sizeof normals[0]; i++) {
+		struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+		const double *normal = normals[i];
+		cut_by_plane(&scene, normal[0], normal[1], normal[2], 0.3 + 0.06 * (double)i);
+		oracle_check(&scene, 37, 33);
+	}
+}
+
+static void plane_of_every_voxel_type_and_interpolation_equals_the_oracle(void **state)
+{
+	(void)state;
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++)
+		for (int nearest = 0; nearest <= 1; nearest++) {
+			struct small_scene scene =
+				small_scene_waves(24, 20, 27, (enum gz_voxel_type)type);
+			cut_by_plane(&scene, -0.4, 0.7, 0.3, 0.55);
+			scene.rays.interpolation =
+				nearest ? GZ_INTERPOLATION_NEAREST : GZ_INTERPOLATION_TRILINEAR;
+			oracle_check_but(&scene, 41, 37, nearest ? 3 : 0);
+			small_scene_free(&scene);
+		}
+}
+
+static void plane_with_clip_box_jitter_and_segments_equals_the_oracle(void **state)
+{
+	(void)state;
+	for (int integration = 0; integration < 2; integration++) {
+		struct small_scene scene = small_scene_waves(32, 30, 8, GZ_VOXEL_U16);
+		scene.volume.spacing[2] = 4;
+		clip(&scene, (const double[3]) { 0.1, 0.2, 0.13 },
+		     (const double[3]) { 1, 0.8, 0.9 });
+		cut_by_plane(&scene, 0.6, 0.5, -0.7, 0.6);
+		scene.rays.jitter = 5;
+		scene.rays.integration = integration;
+		oracle_check(&scene, 41, 41);
+	}
+}
+
+static void plane_around_the_eye_and_along_parallel_rays_equals_the_oracle(void **state)
+{
+	(void)state;
+	static const double eyes[][3] = { { 0.1, 0.2, 0.05 }, { -0.2, 0.1, 0 }, { 2, 0.1, 0.1 } };
+	for (size_t i = 0; i < 2 * sizeof eyes / sizeof eyes[0]; i++) {
+		struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+		const double *eye = eyes[i / 2];
+		look_from(&scene, eye[0], eye[1], eye[2]);
+		cut_by_plane(&scene, i & 1 ? 1 : -1, 0.3, -0.2, 0.5);
+		oracle_check(&scene, 39, 35);
+	}
+	for (int side = -1; side <= 1; side += 2) { /* rays lie along the plane, and across it */
+		struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+		scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+		scene.camera.height = 1.2;
+		look_from(&scene, 0, -2, 0);
+		memset(scene.camera.look_at, 0, sizeof scene.camera.look_at);
+		cut_by_plane(&scene, side, side > 0 ? 0 : 1, 0.4, 0.47);
+		oracle_check(&scene, 41, 37);
+	}
+}
+
+static void plane_along_an_axis_is_a_face_of_the_clip_box(void **state)
+{
+	(void)state;
+	for (int face = 0; face < 6; face++) {
+		struct small_scene scene = small_scene_waves(24, 20, 27, GZ_VOXEL_U8);
+		struct gz_image by_box = { 0 }, by_plane = { 0 };
+		int x = 0, y = 0;
+		double normal[3] = { 0, 0, 0 };
+		struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
+		(face < 3 ? scene.rays.clip.least : scene.rays.clip.greatest)[face % 3] = 0.4;
+		small_scene_render(renderer, &scene, 60, 50, &by_box, NULL);
+		scene.rays.clip = gz_clip_whole;
+		normal[face % 3] = face < 3 ? -0.7 : 0.7;
+		cut_by_plane(&scene, normal[0], normal[1], normal[2], face < 3 ? 0.6 : 0.4);
+		small_scene_render(renderer, &scene, 60, 50, &by_plane, NULL);
+		const int difference = image_difference(&by_box, &by_plane, &x, &y);
+		if (difference > 1)
+			fail_msg("face %d: pixel %d %d differs by %d", face, x, y, difference);
+		gz_raycaster_destroy(&renderer);
+		gz_image_free(&by_box);
+		gz_image_free(&by_plane);
+		small_scene_free(&scene);
+	}
+}
+
+/* A block of matter of one opacity, seen straight from the front and cut by a plane at 45 degrees:
+ * the way of each ray through what is left is known, and so is its brightness. */
+static void plane_leaves_of_each_ray_exactly_its_part(void **state)
+{
+	(void)state;
+	enum { EDGE = 48, SIZE = 96 };
+	const double opacity = 0.03;
+	struct small_scene scene = small_scene_constant(EDGE, opacity);
+	struct gz_image image = { 0 };
+	scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	scene.camera.height = 1;
+	look_from(&scene, 0, -2, 0);
+	memset(scene.camera.look_at, 0, sizeof scene.camera.look_at);
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	for (int behind = 0; behind < 2; behind++) {
+		/* y < x - 0.2 is left, or the other side */
+		cut_by_plane(&scene, behind ? 0.5 : -0.5, behind ? -0.5 : 0.5, 0,
+			     behind ? 0.6 : 0.4);
+		struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
+		small_scene_render(renderer, &scene, SIZE, SIZE, &image, NULL);
+		gz_raycaster_destroy(&renderer);
+		for (int x = 0; x < SIZE; x++) {
+			const double at = (x + 0.5) / SIZE - 0.5;
+			const double front = fmin(fmax(at - 0.2 + 0.5, 0), 1);
+			const double way = EDGE * (behind ? 1 - front : front);
+			const double red = 255 * 0.9 * (1 - pow(1 - opacity, way));
+			const int pixel = image.pixels[4 * (SIZE / 2 * SIZE + x)];
+			if (fabs(pixel - red) > 1)
+				fail_msg("side %d, column %d: red is %d, not %.1f", behind, x,
+					 pixel, red);
+		}
+	}
+	gz_image_free(&image);
+	small_scene_free(&scene);
+}
+
+/* A solid ball: what a plane cuts off is as if those voxels held nothing, to a voxel's width. */
+static void cut_ball_looks_like_a_ball_without_those_voxels(void **state)
+{
+	(void)state;
+	enum { EDGE = 64, SIZE = 120 };
+	static const double normal[3] = { 0.48, -0.6, 0.64 };
+	struct small_scene scene = small_scene_constant(EDGE, 0.4);
+	struct gz_image cut = { 0 }, zeroed = { 0 };
+	uint8_t *voxels = scene.volume.voxels;
+	const double middle = EDGE / 2.0 - 0.5;
+	for (int i = 0; i < EDGE * EDGE * EDGE; i++) {
+		const double at[3] = { i % EDGE - middle, i / EDGE % EDGE - middle,
+				       i / EDGE / EDGE - middle };
+		voxels[i] = gz_length3(at) < 26 ? 255 : 0;
+	}
+	gz_volume_find_range(&scene.volume);
+	scene.transfer.count = 2; /* opaque from half of the range on */
+	scene.transfer.points[1] = scene.transfer.points[0];
+	scene.transfer.points[0].opacity = 0;
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	cut_by_plane(&scene, normal[0], normal[1], normal[2], 0.5);
+	struct gz_raycaster *renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, SIZE, SIZE, &cut, NULL);
+	gz_raycaster_destroy(&renderer);
+	scene.rays.clip.plane = false;
+	for (int i = 0; i < EDGE * EDGE * EDGE; i++) {
+		const double at[3] = { i % EDGE - middle, i / EDGE % EDGE - middle,
+				       i / EDGE / EDGE - middle };
+		voxels[i] = gz_dot3(at, normal) > 0 ? 0 : voxels[i];
+	}
+	renderer = small_scene_renderer(&scene, 1, NULL);
+	small_scene_render(renderer, &scene, SIZE, SIZE, &zeroed, NULL);
+	gz_raycaster_destroy(&renderer);
+	int apart = 0, shown = 0, lost = 0;
+	for (int i = 0; i < SIZE * SIZE; i++) {
+		const int a = cut.pixels[4 * i], b = zeroed.pixels[4 * i];
+		shown += a > 30;
+		lost += (a > 30) != (b > 30);
+		apart += abs(a - b) > 40; /* rims, which half a voxel moves */
+	}
+	if (shown < 2000 || lost > shown / 20 || apart > shown / 10)
+		fail_msg("of %d pixels %d have another outline, %d another brightness", shown, lost,
+			 apart);
+	gz_image_free(&cut);
+	gz_image_free(&zeroed);
+	small_scene_free(&scene);
+}
+
+static void plane_without_a_normal_is_refused(void **state)
+{
+	(void)state;
+	struct gz_ray_params rays = gz_ray_params_default();
+	rays.clip.plane = true;
+	assert_true(gz_ray_params_valid(&rays));
+	rays.clip.normal[0] = 0;
+	assert_false(gz_ray_params_valid(&rays));
+	rays.clip.normal[1] = NAN;
+	assert_false(gz_ray_params_valid(&rays));
+	rays.clip.normal[1] = -0.01;
+	assert_true(gz_ray_params_valid(&rays));
+	rays.clip.offset = 1.5;
+	assert_false(gz_ray_params_valid(&rays));
+}
+
 static void jitter_equals_the_oracle(void **state)
 {
 	(void)state;
@@ -304,6 +504,14 @@ TEST_SUITE(clip)
 		cmocka_unit_test(clip_that_shows_everything_changes_no_bit),
 		cmocka_unit_test(clip_of_constant_matter_keeps_its_brightness_for_any_step),
 		cmocka_unit_test(clip_box_that_holds_nothing_is_refused),
+		cmocka_unit_test(plane_of_any_normal_equals_the_oracle),
+		cmocka_unit_test(plane_of_every_voxel_type_and_interpolation_equals_the_oracle),
+		cmocka_unit_test(plane_with_clip_box_jitter_and_segments_equals_the_oracle),
+		cmocka_unit_test(plane_around_the_eye_and_along_parallel_rays_equals_the_oracle),
+		cmocka_unit_test(plane_along_an_axis_is_a_face_of_the_clip_box),
+		cmocka_unit_test(plane_leaves_of_each_ray_exactly_its_part),
+		cmocka_unit_test(cut_ball_looks_like_a_ball_without_those_voxels),
+		cmocka_unit_test(plane_without_a_normal_is_refused),
 		cmocka_unit_test(jitter_equals_the_oracle),
 		cmocka_unit_test(jitter_with_clip_from_inside_equals_the_oracle),
 		cmocka_unit_test(jitter_is_even_from_0_to_1_and_changes_with_its_seed),

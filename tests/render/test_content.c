@@ -91,6 +91,17 @@ static void specks_what_is_clipped_and_nothing_do_not_count(void **state)
 	gz_content_find(&volume, &upper_half, &left, &box);
 	assert_box(&box, (const double[3]) { 0.25, 0.25, 0.25 },
 		   (const double[3]) { 0.5, 0.75, 0.75 });
+	/* Of the object's diagonal half the box is as large, of less than that smaller. */
+	struct gz_clip_region cut = gz_clip_whole;
+	cut.plane = true;
+	memcpy(cut.normal, (double[3]) { 1, 1, 0 }, sizeof cut.normal);
+	gz_content_find(&volume, &upper_half, &cut, &box);
+	assert_box(&box, (const double[3]) { 0.25, 0.25, 0.25 },
+		   (const double[3]) { 0.75, 0.75, 0.75 });
+	cut.offset = 0.375;
+	gz_content_find(&volume, &upper_half, &cut, &box);
+	assert_box(&box, (const double[3]) { 0.25, 0.25, 0.25 },
+		   (const double[3]) { 0.5, 0.5, 0.75 });
 	nothing.points[1].opacity = 0;
 	gz_content_find(&volume, &nothing, &left, &box);
 	assert_true(gz_clip_region_same(&box, &left));

@@ -208,6 +208,28 @@ static void pictures_of_interleaved_steps_equal_the_cpus(void **state)
 	small_scene_free(&scene);
 }
 
+static void pictures_cut_by_a_plane_equal_the_cpus(void **state)
+{
+	(void)state;
+	for (int type = 0; type < GZ_VOXEL_TYPE_COUNT; type++) {
+		struct small_scene scene = small_scene_waves(70, 51, 64, type);
+		struct pair pair = pair_of(&scene);
+		scene.foveation.method = GZ_METHOD_ACUITY;
+		scene.rays.clip.plane = true;
+		memcpy(scene.rays.clip.normal, (double[3]) { -0.3, -0.7, 0.5 }, 3 * sizeof(double));
+		for (int variant = 0; variant < 3; variant++) {
+			scene.rays.levels = variant == 1;
+			scene.rays.shading = variant == 2 ? GZ_SHADING_GRADIENT : GZ_SHADING_NONE;
+			scene.rays.light.occlusion = variant == 2 ? 0.6 : 0;
+			scene.rays.light.shadow_steps = variant == 2 ? 5 : 0;
+			scene.rays.clip.offset = 0.4 + 0.1 * variant;
+			check_pair(&pair, &scene, 300, 200, "cut by a plane");
+		}
+		pair_free(&pair);
+		small_scene_free(&scene);
+	}
+}
+
 static void soft_shadows_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -628,6 +650,7 @@ TEST_SUITE(gl)
 			pictures_of_colours_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pre_integrated_pictures_and_levels_of_detail_equal_the_cpus),
 		cmocka_unit_test(pictures_of_interleaved_steps_equal_the_cpus),
+		cmocka_unit_test(pictures_cut_by_a_plane_equal_the_cpus),
 		cmocka_unit_test(soft_shadows_equal_the_cpus),
 		cmocka_unit_test(soft_shadows_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),

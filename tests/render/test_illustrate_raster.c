@@ -279,6 +279,19 @@ static void clip_box_cuts_as_it_cuts_rays(void **state)
 	take_down_easel(&easel);
 }
 
+static void clip_plane_cuts_as_it_cuts_rays(void **state)
+{
+	(void)state;
+	struct easel easel;
+	set_up_easel(&easel);
+	add_two_balls(&easel);
+	easel.clip.plane = true;
+	memcpy(easel.clip.normal, (double[3]) { 0.6, -0.7, 0.3 }, sizeof easel.clip.normal);
+	easel.clip.offset = 0.45;
+	(void)check_same(&easel, "balls cut by a plane");
+	take_down_easel(&easel);
+}
+
 /* Shells in one another: more layers than show. The third is opaque, or none is. */
 static void transparent_shells_blend_as_by_rays(void **state)
 {
@@ -672,6 +685,7 @@ TEST_SUITE(illustrate_raster)
 		cmocka_unit_test(every_parameter_alone_looks_as_by_rays),
 		cmocka_unit_test(surface_around_the_eye_looks_as_by_rays),
 		cmocka_unit_test(clip_box_cuts_as_it_cuts_rays),
+		cmocka_unit_test(clip_plane_cuts_as_it_cuts_rays),
 		cmocka_unit_test(transparent_shells_blend_as_by_rays),
 		cmocka_unit_test(object_with_a_template_of_its_own_looks_as_by_rays),
 		cmocka_unit_test(regions_with_a_common_wall_look_as_by_rays),

@@ -234,6 +234,15 @@ static void clip_box_cuts(void **state)
 	gallery.rays.clip.greatest[0] = 0.1;
 	draw_gallery(&gallery, NULL);
 	assert_int_equal(drawn_pixels(&gallery), 0);
+	/* A plane cuts like the box's face there. */
+	gallery.rays.clip.greatest[0] = 1;
+	gallery.rays.clip.plane = true;
+	draw_gallery(&gallery, NULL);
+	assert_int_equal(drawn_pixels(&gallery), half);
+	assert_int_equal(grey_at(&gallery, WIDTH / 2 + 4, HEIGHT / 2), 255);
+	gallery.rays.clip.offset = 0.1;
+	draw_gallery(&gallery, NULL);
+	assert_int_equal(drawn_pixels(&gallery), 0);
 	close_gallery(&gallery);
 }
 

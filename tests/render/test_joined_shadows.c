@@ -373,6 +373,30 @@ static void what_the_clip_box_cuts_off_casts_no_shadow(void **state)
 	joined_take_down(&joined);
 }
 
+/* The same by a plane: what is left is beside the block, and beside the ball. */
+static void what_the_clip_plane_cuts_off_casts_no_shadow(void **state)
+{
+	(void)state;
+	struct joined joined;
+	set_up_shadows(1, &joined);
+	joined.rays.clip.plane = true;
+	joined.rays.clip.normal[0] = -1;
+	joined.rays.clip.offset = 0.45;
+	joined.rays.background[2] = 0;
+	struct gz_image without_block = draw_copy(&TWO_THREADS, &joined);
+	joined.rays.light.shadow_steps = 0;
+	assert_int_equal(count_changed(&joined), 0);
+	gz_image_free(&without_block);
+	joined_take_down(&joined);
+	set_up_shadows(0, &joined);
+	joined.rays.clip.plane = true;
+	joined.rays.clip.offset = 0.55;
+	joined_draw(&TWO_THREADS, 2, &joined);
+	joined.rays.surface.shadows = false;
+	assert_int_equal(count_changed(&joined), 0);
+	joined_take_down(&joined);
+}
+
 /* A volume's own surface, by triangles and by voxels: both cast the shadow on its smoke. */
 static void surface_in_the_voxels_casts_the_shadow_of_its_triangles(void **state)
 {
@@ -453,6 +477,7 @@ TEST_SUITE(joined_shadows)
 		cmocka_unit_test(shadows_follow_a_ball_that_moves),
 		cmocka_unit_test(keys_say_what_casts_a_shadow),
 		cmocka_unit_test(what_the_clip_box_cuts_off_casts_no_shadow),
+		cmocka_unit_test(what_the_clip_plane_cuts_off_casts_no_shadow),
 		cmocka_unit_test(steps_towards_the_light_grow_with_those_of_the_plan),
 		cmocka_unit_test(surface_in_the_voxels_casts_the_shadow_of_its_triangles),
 	};

@@ -109,6 +109,8 @@ static const struct refusal refusals[] = {
 	{ SCENE "[render]\nbackground = 0 0 1.5\n", "s.scene:7: render.background: 1.5 is" },
 	{ SCENE "[clip]\nleast = 0 0.5 0\ngreatest = 1 0.5 1\n",
 	  "s.scene: clip.least must be below clip.greatest" },
+	{ SCENE "[clip]\nnormal = 0 0 0\n", "s.scene: clip.normal must not be 0 0 0" },
+	{ SCENE "[clip]\noffset = 1.1\n", "s.scene:7: clip.offset: 1.1 is outside" },
 	{ SCENE "[light]\ndirection = 0 0 0\n", "light.direction must not be 0 0 0" },
 	{ SCENE "[render]\nshading = phong\n", "s.scene:7: render.shading: phong is not" },
 	{ SCENE "[render]\nray_sampling_rate = 1\nray_sampling_rate = 1\n", "s.scene:8: " },

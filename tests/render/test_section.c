@@ -324,9 +324,7 @@ static void a_look_sees_what_the_clip_box_leaves(void **state)
 		.count = 2,
 		.points = { { .value = 0.1, .opacity = 0 }, { .value = 0.1, .opacity = 1 } },
 	};
-	struct gz_section_ray ray = {
-		{ 0, 0, -2 }, { 0, 0, 1 }, INFINITY, { .greatest = { 1, 1, 1 } }
-	};
+	struct gz_section_ray ray = { { 0, 0, -2 }, { 0, 0, 1 }, INFINITY, gz_clip_whole };
 	struct gz_volume volume;
 	struct gz_section_seen seen;
 	make_column(&volume, values, 4);
@@ -336,6 +334,15 @@ static void a_look_sees_what_the_clip_box_leaves(void **state)
 	assert_true(gz_section_look(&volume, &solid, &ray, &seen));
 	assert_float_equal(seen.value, 0.8, 1e-6);
 	ray.clip.least[0] = 0.6;
+	assert_false(gz_section_look(&volume, &solid, &ray, &seen));
+	/* The clip plane leaves the upper part. */
+	ray.clip = gz_clip_whole;
+	ray.clip.plane = true;
+	memcpy(ray.clip.normal, (double[3]) { 0.1, 0, -1 }, sizeof ray.clip.normal);
+	ray.clip.offset = 0.3;
+	assert_true(gz_section_look(&volume, &solid, &ray, &seen));
+	assert_float_equal(seen.value, 0.8, 1e-6);
+	ray.clip.offset = 0;
 	assert_false(gz_section_look(&volume, &solid, &ray, &seen));
 	/* Labels are not mixed. */
 	ray.clip = gz_clip_whole;

@@ -316,6 +316,20 @@ static void occlusion_with_clip_equals_the_oracle(void **state)
 	oracle_check(&scene, 41, 33);
 }
 
+static void occlusion_and_light_at_a_clip_plane_equal_the_oracle(void **state)
+{
+	(void)state;
+	for (int occlusion = 0; occlusion < 2; occlusion++) {
+		struct small_scene scene = lit_waves(25, 30, 27, GZ_VOXEL_U8);
+		scene.transfer.points[2].opacity = 0.9;
+		scene.rays.light.occlusion = occlusion;
+		scene.rays.clip.plane = true;
+		memcpy(scene.rays.clip.normal, (double[3]) { -0.3, -0.8, 0.5 }, 3 * sizeof(double));
+		scene.rays.clip.offset = 0.45;
+		oracle_check(&scene, 41, 33);
+	}
+}
+
 /* A solid ball, or what else a function of the place says is inside. */
 static struct small_scene solid(double (*share)(double x, double y, double z))
 {
@@ -602,6 +616,7 @@ TEST_SUITE(shading)
 		cmocka_unit_test(occlusion_of_any_radius_equals_the_oracle),
 		cmocka_unit_test(occlusion_of_anisotropic_and_flat_volumes_equals_the_oracle),
 		cmocka_unit_test(occlusion_with_clip_equals_the_oracle),
+		cmocka_unit_test(occlusion_and_light_at_a_clip_plane_equal_the_oracle),
 		cmocka_unit_test(ball_is_as_bright_as_its_angle_to_the_light),
 		cmocka_unit_test(inside_of_a_ball_is_lit_as_its_outside),
 		cmocka_unit_test(even_matter_keeps_its_colour),

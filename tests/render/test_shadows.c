@@ -74,6 +74,23 @@ static void shadows_with_clip_and_jitter_equal_the_oracle(void **state)
 	oracle_check(&scene, 31, 27);
 }
 
+/* With the light before the plane, behind it and along it. */
+static void shadows_with_a_clip_plane_equal_the_oracle(void **state)
+{
+	(void)state;
+	static const double normals[][3] = { { -0.4, 0.6, 1 }, { 0.4, -0.6, -1 }, { 0.9, 0.6, 0 } };
+	for (size_t i = 0; i < sizeof normals / sizeof normals[0]; i++) {
+		struct small_scene scene = shadowed_waves(24, 24, 24, GZ_VOXEL_U8);
+		scene.rays.clip.plane = true;
+		memcpy(scene.rays.clip.normal, normals[i], sizeof normals[i]);
+		scene.rays.clip.offset = 0.55;
+		scene.rays.light.frame = GZ_LIGHT_WORLD;
+		memcpy(scene.rays.light.direction, (double[3]) { -0.4, 0.6, 1 },
+		       3 * sizeof(double));
+		oracle_check(&scene, 31, 27);
+	}
+}
+
 static void shadows_of_anisotropic_and_flat_volumes_equal_the_oracle(void **state)
 {
 	(void)state;
@@ -360,6 +377,7 @@ TEST_SUITE(shadows)
 		cmocka_unit_test(shadows_of_any_number_of_steps_equal_the_oracle),
 		cmocka_unit_test(shadows_by_a_light_along_an_axis_equal_the_oracle),
 		cmocka_unit_test(shadows_with_clip_and_jitter_equal_the_oracle),
+		cmocka_unit_test(shadows_with_a_clip_plane_equal_the_oracle),
 		cmocka_unit_test(shadows_of_anisotropic_and_flat_volumes_equal_the_oracle),
 		cmocka_unit_test(shadows_of_segments_colours_and_nearest_voxels_equal_the_oracle),
 		cmocka_unit_test(more_steps_come_closer_to_light_followed_in_small_steps),

@@ -16,7 +16,9 @@ static struct gz_slice_request request_of(const struct gz_camera *camera, int co
 {
 	struct gz_slice_request request = {
 		.half = { 0.5, 0.3, 0.4 },
-		.shown = { .least = { -0.5, -0.3, -0.4 }, .greatest = { 0.5, 0.3, 0.4 } },
+		.shown = { .least = { -0.5, -0.3, -0.4 },
+			   .greatest = { 0.5, 0.3, 0.4 },
+			   .plane = { 0, 0, 0, 1 } },
 		.count = count,
 	};
 	assert_int_equal(gz_camera_rays(camera, WIDTH, HEIGHT, &request.rays), GZ_OK);
@@ -177,6 +179,42 @@ static void box_is_cut_again_only_for_another_view(void **state)
 	gz_slice_cut_free(&cut);
 }
 
+/* Slices of a plane through the box's middle and of its back leave together what is there. */
+static void plane_leaves_its_side_of_each_slice(void **state)
+{
+	(void)state;
+	for (int projection = 0; projection < 2; projection++) {
+		const struct gz_camera camera =
+			camera_at(0.9, -1.2, 0.6, (enum gz_projection)projection);
+		struct gz_slice_request request = request_of(&camera, 24);
+		struct gz_slice_cut whole = { 0 }, sides[2] = { { 0 }, { 0 } };
+		assert_int_equal(gz_slice_cut_make(&request, &whole), GZ_OK);
+		for (int side = 0; side < 2; side++) {
+			static const double plane[4] = { 0.3, 1, -0.6, 0.05 };
+			for (int i = 0; i < 4; i++)
+				request.shown.plane[i] = side ? -plane[i] : plane[i];
+			assert_int_equal(gz_slice_cut_make(&request, &sides[side]), GZ_OK);
+			for (int i = 0; i < sides[side].first[24]; i++) {
+				double pixel[2], world[3];
+				place_corner(&sides[side], &sides[side].corners[i], pixel, world);
+				assert_true(gz_clip_beyond(&request.shown, world) < 1e-5);
+			}
+		}
+		double total = 0;
+		for (int slice = 0; slice < 24; slice++) {
+			const double area = slice_area(&whole, slice);
+			const double kept = slice_area(&sides[0], slice);
+			const double other = slice_area(&sides[1], slice);
+			assert_float_equal(kept + other, area, 1e-5);
+			total += fmin(kept, other);
+		}
+		assert_true(total > 0.5);
+		gz_slice_cut_free(&whole);
+		gz_slice_cut_free(&sides[0]);
+		gz_slice_cut_free(&sides[1]);
+	}
+}
+
 /* ---- lattices ---- */
 
 static bool is_within(int value, int from, int to)
@@ -271,6 +309,7 @@ TEST_SUITE(slice_geometry)
 		cmocka_unit_test(slice_covers_the_pixels_whose_rays_cross_the_box_there),
 		cmocka_unit_test(slices_begin_at_an_eye_within_the_box_and_end_behind_it),
 		cmocka_unit_test(box_is_cut_again_only_for_another_view),
+		cmocka_unit_test(plane_leaves_its_side_of_each_slice),
 		cmocka_unit_test(every_pixel_lies_between_points_that_are_drawn),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

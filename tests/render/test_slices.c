@@ -174,6 +174,23 @@ static void slices_of_a_clipped_volume_of_one_layer_converge_to_rays(void **stat
 	check_convergence(&scene, "one layer");
 }
 
+static void slices_cut_by_a_plane_converge_to_rays(void **state)
+{
+	(void)state;
+	static const double normals[][3] = { { 0.4, 0.7, -0.3 }, { -0.2, -0.9, 0.5 } };
+	for (int i = 0; i < 4; i++) {
+		struct small_scene scene = small_scene_waves(30, 21, 27, GZ_VOXEL_U8);
+		scene.camera.projection =
+			i & 1 ? GZ_PROJECTION_ORTHOGRAPHIC : GZ_PROJECTION_PERSPECTIVE;
+		scene.camera.height = 1.3;
+		scene.rays.clip.greatest[0] = 0.9;
+		scene.rays.clip.plane = true;
+		memcpy(scene.rays.clip.normal, normals[i / 2], sizeof normals[0]);
+		scene.rays.clip.offset = 0.55;
+		check_convergence(&scene, "cut by a plane");
+	}
+}
+
 /* Beer and Lambert: through a block of one opacity comes as much light by any number of slices. */
 static void opacity_of_a_block_does_not_depend_on_the_slices(void **state)
 {
@@ -393,6 +410,7 @@ TEST_SUITE(slices)
 		cmocka_unit_test(pre_integrated_slices_converge_to_rays_from_within),
 		cmocka_unit_test(slices_of_labels_and_of_colours_converge_to_rays),
 		cmocka_unit_test(slices_of_a_clipped_volume_of_one_layer_converge_to_rays),
+		cmocka_unit_test(slices_cut_by_a_plane_converge_to_rays),
 		cmocka_unit_test(opacity_of_a_block_does_not_depend_on_the_slices),
 		cmocka_unit_test(closing_opaque_points_saves_samples_and_changes_no_pixel_by_two),
 		cmocka_unit_test(foveated_picture_is_full_at_the_gaze_and_takes_fewer_points),

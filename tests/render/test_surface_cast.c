@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/captured_log.h"
+#include "base/vector.h"
 #include "mesh_fields.h"
 #include "oracle.h"
 #include "render/frame/picture_maker.h"
@@ -567,6 +568,57 @@ static void clip_box_cuts_what_is_outside(void **state)
 	gz_volume_free(&volume);
 }
 
+/* A ball of radius r about the origin, and n . p <= d is left of it, in mm. Rays meet it where the
+ * formula says: at its front if that is left, else at its back if that is, from within. */
+static void rays_meet_what_a_plane_leaves_of_a_ball(void **state)
+{
+	(void)state;
+	static const double normal[3] = { 0.8, 0, 0.6 };
+	struct gz_volume volume = field_volume(field_ball, BALL_DIMS, EVEN, GZ_VOXEL_F32);
+	const struct gz_object object = object_of(&volume);
+	struct stage stage;
+	int front = 0, back = 0, none = 0;
+	set_up_stage(&stage);
+	stage.rays.clip.plane = true;
+	memcpy(stage.rays.clip.normal, normal, sizeof normal);
+	draw_objects(&object, 1, &stage);
+	struct gz_plane whole = stage.depth;
+	stage.rays.clip.plane = false;
+	stage.depth = (struct gz_plane) { 0 };
+	draw_objects(&object, 1, &stage);
+	for (int y = 0; y < HEIGHT; y++)
+		for (int x = 0; x < WIDTH; x++) {
+			const struct ray ray = ray_of(&stage, x, y, 64);
+			const double first = (double)gz_plane_value(&stage.depth, x, y) * 64;
+			const double cut = (double)gz_plane_value(&whole, x, y) * 64;
+			double place[3];
+			if (!isfinite(first))
+				continue;
+			point_on(&ray, first, place);
+			const double radius = gz_length3(place);
+			const double here = gz_dot3(place, normal);
+			/* The ray's other end in the ball, by the chord. */
+			const double chord = -2 * gz_dot3(place, ray.direction);
+			const double there = here + chord * gz_dot3(ray.direction, normal);
+			if (fabs(here) < 1 || fabs(there) < 1 || chord < 0.3 * radius)
+				continue;
+			if (here < 0) {
+				front++;
+				assert_float_equal(cut, first, 1e-3);
+			} else if (there < 0) {
+				back++;
+				assert_float_equal(cut, first + chord, 0.4);
+			} else {
+				none++;
+				assert_false(isfinite(cut));
+			}
+		}
+	assert_true(front > 200 && back > 200 && none > 200);
+	gz_plane_free(&whole);
+	take_down_stage(&stage);
+	gz_volume_free(&volume);
+}
+
 /* Distance along a ray, mm, at which trilinear data first reach the isovalue; NaN if they do so
  * where the ray enters. */
 static double first_hit(const struct gz_volume *volume, const struct ray *ray, double isovalue)
@@ -701,6 +753,7 @@ TEST_SUITE(surface_cast)
 		cmocka_unit_test(mesh_looks_like_the_surface_it_was_made_of),
 		cmocka_unit_test(isovalue_outside_the_data_shows_the_background_and_says_so),
 		cmocka_unit_test(clip_box_cuts_what_is_outside),
+		cmocka_unit_test(rays_meet_what_a_plane_leaves_of_a_ball),
 		cmocka_unit_test(first_hit_of_the_data_lies_within_a_voxel),
 		cmocka_unit_test(technique_draws_by_the_picture_maker),
 		cmocka_unit_test(what_cannot_be_drawn_is_refused),

@@ -221,14 +221,18 @@ static void picture_is_that_of_triangles(void **state)
 {
 	(void)state;
 	for (int shadows = 0; shadows < 2; shadows++)
-		for (int clipped = 0; clipped < 2; clipped++) {
+		for (int clipped = 0; clipped < 3; clipped++) { /* by nothing, box, plane */
 			struct field_stage stage;
 			struct gz_image triangles = { 0 };
 			set_up_field(field_volume(field_ring, (const int[3]) { 70, 70, 40 },
 						  (const double[3]) { 0.9, 0.9, 1 }, GZ_VOXEL_F32),
 				     &stage);
 			stage.rays.surface.shadows = shadows;
-			stage.rays.clip.greatest[0] = clipped ? 0.7 : 1;
+			stage.rays.clip.greatest[0] = clipped == 1 ? 0.7 : 1;
+			stage.rays.clip.plane = clipped == 2;
+			memcpy(stage.rays.clip.normal, (double[3]) { 0.5, -0.4, 0.7 },
+			       3 * sizeof(double));
+			stage.rays.clip.offset = 0.6;
 			stage.rays.light.frame = GZ_LIGHT_WORLD;
 			memcpy(stage.rays.light.direction, (double[3]) { 1, 0.2, 0.6 },
 			       3 * sizeof(double));

@@ -255,6 +255,23 @@ static void clip_box_cuts_as_it_cuts_rays(void **state)
 	gz_volume_free(&volume);
 }
 
+/* Shadows and all: what is cut off casts none. */
+static void clip_plane_cuts_as_it_cuts_rays(void **state)
+{
+	(void)state;
+	struct gz_volume volume = field_volume(field_ball, DIMS, EVEN, GZ_VOXEL_F32);
+	const struct gz_object object = { .id = 7, .volume = &volume };
+	struct stage stage = new_stage();
+	stage.rays.clip.plane = true;
+	memcpy(stage.rays.clip.normal, (double[3]) { 0.5, -0.6, 0.6 }, sizeof(double[3]));
+	stage.rays.clip.offset = 0.55;
+	check_same(&stage, &object, 1, "ball cut by a plane");
+	stage.rays.clip.least[2] = 0.3;
+	check_same(&stage, &object, 1, "ball cut by a plane and the clip box");
+	free_stage(&stage);
+	gz_volume_free(&volume);
+}
+
 static void surface_around_the_eye_looks_as_by_rays(void **state)
 {
 	(void)state;
@@ -910,6 +927,7 @@ TEST_SUITE(surface_raster)
 		cmocka_unit_test(ball_and_ring_look_as_by_rays_in_both_projections),
 		cmocka_unit_test(several_objects_hide_each_other_as_by_rays),
 		cmocka_unit_test(clip_box_cuts_as_it_cuts_rays),
+		cmocka_unit_test(clip_plane_cuts_as_it_cuts_rays),
 		cmocka_unit_test(surface_around_the_eye_looks_as_by_rays),
 		cmocka_unit_test(glass_over_a_floor_looks_as_by_rays_of_one_bounce),
 		cmocka_unit_test(six_pictures_around_look_as_by_rays),

@@ -37,6 +37,16 @@ static bool clip_ray(const struct gz_illustrate_cast *cast, struct RTCRay16 *ray
 		ray->tnear[i] = fmaxf(ray->tnear[i], fminf(a, b));
 		ray->tfar[i] = fminf(ray->tfar[i], fmaxf(a, b));
 	}
+	const float *plane = cast->frame->clip_plane;
+	const float beyond =
+		plane[0] * origin[0] + plane[1] * origin[1] + plane[2] * origin[2] - plane[3];
+	const float across =
+		plane[0] * direction[0] + plane[1] * direction[1] + plane[2] * direction[2];
+	const float at = -beyond / (fabsf(across) > 1e-20F ? across : 1e-20F);
+	if (across < 0)
+		ray->tnear[i] = fmaxf(ray->tnear[i], at);
+	else
+		ray->tfar[i] = fminf(ray->tfar[i], at);
 	return ray->tnear[i] <= ray->tfar[i];
 }
 

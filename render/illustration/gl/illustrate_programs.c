@@ -8,6 +8,7 @@
 
 /* Shader texts, embedded when the program is built. */
 extern const char gz_glsl_shading_constants_h[];
+extern const char gz_glsl_clip_distances_glsl[];
 extern const char gz_glsl_raster_place_glsl[];
 extern const char gz_glsl_raster_rays_glsl[];
 extern const char gz_glsl_illustrate_block_glsl[];
@@ -66,6 +67,7 @@ void gz_illustrate_block_fill(const struct gz_illustrate_frame *frame,
 	memcpy(out_block->view_rows, view->rows, sizeof view->rows);
 	copy_floats3(frame->clip_least, out_block->clip_least);
 	copy_floats3(frame->clip_greatest, out_block->clip_greatest);
+	memcpy(out_block->clip_plane, frame->clip_plane, sizeof frame->clip_plane);
 	copy_floats3(frame->lamp, out_block->lamp);
 }
 
@@ -94,7 +96,8 @@ void gz_illustrate_shaders(struct gz_gl_shader out_shaders[2])
 		.stage = GZ_GL_VERTEX,
 		.name = "illustrate.vert",
 		.parts = { numbers, gz_glsl_shading_constants_h, gz_glsl_illustrate_block_glsl,
-			   gz_glsl_raster_place_glsl, gz_glsl_illustrate_vert },
+			   gz_glsl_clip_distances_glsl, gz_glsl_raster_place_glsl,
+			   gz_glsl_illustrate_vert },
 		.with_430 = true,
 	};
 	out_shaders[1] = (struct gz_gl_shader) {

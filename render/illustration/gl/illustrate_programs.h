@@ -17,7 +17,7 @@ struct gz_illustrate_block {
 	float origin00[4], origin_dx[4], origin_dy[4];
 	float direction00[4], direction_dx[4], direction_dy[4];
 	float view_rows[4][4];
-	float clip_least[4], clip_greatest[4];
+	float clip_least[4], clip_greatest[4], clip_plane[4];
 	float lamp[4];
 };
 

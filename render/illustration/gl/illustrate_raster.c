@@ -16,15 +16,13 @@
 #include "render/layers/gl_layers.h"
 #include "render/opengl/gl_target.h"
 #include "render/surface/gl/raster_meshes.h"
+#include "render/surface/gl/raster_programs.h"
 #include "render/surface/gl/raster_view.h"
 
 #define GZ_LOG_MODULE "illustration"
 
 /* Moments of a frame. */
 enum { MARK_START, MARK_FOUND };
-
-/* Distances of gl_ClipDistance that the vertex shader writes. */
-enum { CLIP_DISTANCES = 6 };
 
 static const char remedy[] = "use --backend cpu";
 
@@ -239,15 +237,6 @@ static enum gz_result fill_numbers(struct illustrate_rastering *rastering,
 	return fill_looks(raster);
 }
 
-static void set_illustrate_clipping(bool on)
-{
-	for (GLenum i = 0; i < CLIP_DISTANCES; i++)
-		if (on)
-			glEnable(GL_CLIP_DISTANCE0 + i);
-		else
-			glDisable(GL_CLIP_DISTANCE0 + i);
-}
-
 /* Draw the meshes of a layer of surfaces on a lattice. The last one has what is opaque alone. */
 static void draw_illustrated(const struct illustrate_rastering *rastering, int layer,
 			     const struct gz_raster_layer *lattice)
@@ -287,9 +276,9 @@ static void find_on_lattice(const struct illustrate_rastering *rastering, int la
 		    (float)lattice->spacing);
 	glUniform2f(GZ_ILLUSTRATE_POINTS, (float)lattice->points[0], (float)lattice->points[1]);
 	glUniform1i(GZ_ILLUSTRATE_BEHIND, layer > 0);
-	set_illustrate_clipping(raster->frame.clipped);
+	gz_raster_clip(raster->frame.clipped);
 	draw_illustrated(rastering, layer, lattice);
-	set_illustrate_clipping(false);
+	gz_raster_clip(false);
 	glBindTexture(GL_TEXTURE_2D, 0);
 }
 

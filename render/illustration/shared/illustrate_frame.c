@@ -15,12 +15,14 @@ static void fill_illustrate_clip(const struct gz_illustrate_scene *scene,
 	const struct gz_volume *volume = scene->meshes.items[0].object.volume;
 	struct gz_clip_bounds bounds;
 	double edges[3], corner[3];
-	frame->clipped = !gz_clip_region_same(clip, &gz_clip_whole);
+	frame->clipped = gz_clip_region_cuts(clip);
 	for (int axis = 0; axis < 3; axis++) {
 		edges[axis] = volume->dims[axis] * volume->spacing[axis];
 		corner[axis] = -edges[axis] / 2;
 	}
-	gz_clip_region_place(clip, edges, corner, &bounds);
+	gz_clip_region_place(clip, volume, edges, corner, &bounds);
+	for (int i = 0; i < 4; i++)
+		frame->clip_plane[i] = (float)bounds.plane[i];
 	for (int axis = 0; axis < 3; axis++) {
 		frame->clip_least[axis] = (float)bounds.least[axis];
 		frame->clip_greatest[axis] = (float)bounds.greatest[axis];

@@ -34,6 +34,7 @@ struct gz_illustrate_look {
 struct gz_illustrate_frame {
 	bool clipped;
 	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
+	float clip_plane[4];                   /**< struct gz_clip_bounds */
 	float lamp[3];                         /**< unit vector towards the lamp of plain light */
 	float near_mm, far_mm;                 /**< of the scene along the ray in the middle */
 	/** Of objects without templates; weights of the picture's steps are the greatest of all

@@ -71,6 +71,7 @@ struct gz_cast {
 	float origin00[3], origin_dx[3], origin_dy[3];
 	float direction00[3], direction_dx[3], direction_dy[3];
 	float clip_least[3], clip_greatest[3];  /**< voxel coordinates */
+	float clip_plane[4];                    /**< struct gz_clip_bounds */
 	float world_per_voxel[3];               /**< world units per voxel */
 	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
 	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the steps in voxel lengths */

@@ -9,6 +9,7 @@
 
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/fine_cells.h"
+#include "render/raycast/cpu/simd_clip.h"
 #include "render/raycast/cpu/simd_light.h"
 #include "render/raycast/shared/macrocells.h"
 
@@ -62,6 +63,7 @@ SIMD struct cuts cut_rays(const struct gz_cast *cast, const vf origin[3], const 
 		cuts.enter = vf_max(cuts.enter, vf_min(clip_low, clip_high));
 		cuts.leave = vf_min(cuts.leave, vf_max(clip_low, clip_high));
 	}
+	cut_by_plane(cast->clip_plane, origin, rays->delta, &cuts.enter, &cuts.leave);
 	return cuts;
 }
 

@@ -284,6 +284,9 @@ SIMD vf walk_to_light(const struct gz_cast *cast, struct reading reading, float 
 	for (int axis = 0; axis < 3; axis++)
 		leave = vf_min(leave, (vf_set(shadow->exit[axis]) - at[axis]) *
 					      vf_set(shadow->inverse[axis]));
+	const vf exit[3] = { vf_set(shadow->exit_plane[0]), vf_set(shadow->exit_plane[1]),
+			     vf_set(shadow->exit_plane[2]) };
+	leave = vf_min(leave, vf_set(shadow->exit_plane[3]) - dot_lanes(exit, at));
 	const float steps = (float)shadow->steps;
 	const float unit = (shadow->reach - GZ_SHADOW_START) / (steps * steps);
 	for (float i = 0, next; i < steps; i = next) {

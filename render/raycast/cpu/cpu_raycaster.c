@@ -292,9 +292,11 @@ static void fill_cast_volume(const struct cpu_raycaster *cpu, int index,
 	gz_volume_half_extent(cpu->volume, half);
 	for (int axis = 0; axis < 3; axis++)
 		box[axis] = (double)cpu->volume->dims[axis] / level->factor[axis];
-	gz_clip_region_place(clip, box, corner, &bounds);
+	gz_clip_region_place(clip, cpu->volume, box, corner, &bounds);
 	gz_cast_fill_voxels(&level->volume, cast);
 	cast->reach = cells->reach;
+	for (int i = 0; i < 4; i++)
+		cast->clip_plane[i] = (float)bounds.plane[i];
 	for (int axis = 0; axis < 3; axis++) {
 		cast->box[axis] = (float)box[axis];
 		cast->clip_least[axis] = (float)bounds.least[axis];

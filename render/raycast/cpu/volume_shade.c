@@ -11,14 +11,14 @@ _Static_assert(GZ_SHADE_PLACES == GZ_TILE_RAYS, "kernels take as many places");
 static float find_begin(const struct gz_volume_shade *shade, const float at[3], float from)
 {
 	const struct gz_cast_shadow *shadow = &shade->walk.cast.light.shadow;
-	float begin = fmaxf(from, GZ_SHADOW_START), end = INFINITY;
+	double origin[3], towards[3], ends[2];
 	for (int axis = 0; axis < 3; axis++) {
-		const float low = (shade->least[axis] - at[axis]) * shadow->inverse[axis];
-		const float high = (shade->greatest[axis] - at[axis]) * shadow->inverse[axis];
-		begin = fmaxf(begin, fminf(low, high));
-		end = fminf(end, fmaxf(low, high));
+		origin[axis] = (double)at[axis];
+		towards[axis] = (double)shadow->towards[axis];
 	}
-	return begin < end ? begin : INFINITY;
+	const bool any = gz_clip_bounds_cross(&shade->shown, origin, towards, ends);
+	const float begin = fmaxf(fmaxf(from, GZ_SHADOW_START), (float)ends[0]);
+	return any && begin < (float)ends[1] ? begin : INFINITY;
 }
 
 /* struct gz_shade, find */
@@ -66,15 +66,12 @@ enum gz_result gz_volume_shade_make(const struct gz_lighting *lighting,
 		return result;
 	static const double first_datum[3] = { -0.5, -0.5, -0.5 };
 	const double dims[3] = { volume->dims[0], volume->dims[1], volume->dims[2] };
-	struct gz_clip_bounds bounds;
 	double half[3];
 	gz_volume_half_extent(volume, half);
-	gz_clip_region_place(&rays->clip, dims, first_datum, &bounds);
+	gz_clip_region_place(&rays->clip, volume, dims, first_datum, &shade->shown);
 	for (int axis = 0; axis < 3; axis++) {
 		shade->scale[axis] = (float)(dims[axis] / (2 * half[axis]));
 		shade->bias[axis] = (float)(dims[axis] / 2 - 0.5);
-		shade->least[axis] = (float)bounds.least[axis];
-		shade->greatest[axis] = (float)bounds.greatest[axis];
 	}
 	shade->lengths_per_world = (float)(1 / gz_volume_voxel_length(volume));
 	/* The whole way through the box counts, though steps begin before it. */

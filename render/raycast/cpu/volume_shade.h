@@ -15,7 +15,7 @@ struct gz_volume_shade {
 	struct gz_light_walk walk;
 	/** From the world to voxels counted from the first datum: at * scale + bias. */
 	float scale[3], bias[3];
-	float least[3], greatest[3]; /**< of the clip region, counted from the first datum */
+	struct gz_clip_bounds shown; /**< the clip region, counted from the first datum */
 	float lengths_per_world;     /**< voxel lengths of a world unit */
 };
 

@@ -64,6 +64,7 @@ struct gz_gl_cast_block {
 	float dims[4];            /**< voxels */
 	float box[4];             /**< far corner: dims, or less for a coarser level of odd size */
 	float clip_least[4], clip_greatest[4]; /**< voxel coordinates */
+	float clip_plane[4];                   /**< struct gz_clip_bounds */
 	float cell_counts[4];                  /**< macrocells */
 	float transfer[4];       /**< scale and bias from stored value to share of the table; the
 				    share of light with which a ray ends; the last entry's number */

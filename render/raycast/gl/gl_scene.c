@@ -393,7 +393,9 @@ static void fill_block_volume(const struct gz_gl_scene *scene, int index,
 	double box[3];
 	for (int axis = 0; axis < 3; axis++)
 		box[axis] = (double)scene->volume->dims[axis] / level->factor[axis];
-	gz_clip_region_place(clip, box, corner, &bounds);
+	gz_clip_region_place(clip, scene->volume, box, corner, &bounds);
+	for (int i = 0; i < 4; i++)
+		block->clip_plane[i] = (float)bounds.plane[i];
 	for (int axis = 0; axis < 3; axis++) {
 		const int dim = level->volume.dims[axis];
 		block->dims[axis] = (float)dim;

@@ -102,7 +102,7 @@ static enum gz_result begin_search(struct want_search *search)
 		corner[axis] = -search->half[axis];
 		edges[axis] = 2 * search->half[axis];
 	}
-	gz_clip_region_place(scene->clip, edges, corner, &search->shown);
+	gz_clip_region_place(scene->clip, scene->volume, edges, corner, &search->shown);
 	const double centre[3] = { -search->origin[0], -search->origin[1], -search->origin[2] };
 	search->near = fmax(0, gz_dot3(centre, search->forward) - gz_length3(search->half));
 	return GZ_OK;
@@ -205,7 +205,8 @@ static bool ball_of(const struct want_search *search, int level, const int brick
 		    double out_centre[3], double *out_radius)
 {
 	const struct gz_brick_level *l = &search->scene->layout->levels[level];
-	double radius2 = 0;
+	const double *plane = search->shown.plane;
+	double radius2 = 0, deepest[3];
 	for (int axis = 0; axis < 3; axis++) {
 		const double half = search->half[axis];
 		const double voxel =
@@ -219,7 +220,11 @@ static bool ball_of(const struct want_search *search, int level, const int brick
 			return false;
 		out_centre[axis] = (low + high) / 2;
 		radius2 += (high - low) * (high - low) / 4;
+		/* The corner that lies the deepest on the side that the clip plane keeps. */
+		deepest[axis] = plane[axis] > 0 ? low - margin : high + margin;
 	}
+	if (gz_clip_beyond(&search->shown, deepest) > 0)
+		return false;
 	*out_radius = sqrt(radius2);
 	return true;
 }

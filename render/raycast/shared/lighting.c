@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "base/vector.h"
 #include "render/light/light.h"
 #include "render/light/light_constants.h"
 
@@ -124,27 +125,42 @@ static void fill_shadow_levels(const struct gz_shadow_cells *shadows, const int 
 	}
 }
 
+/* Where they leave the kept side of the clip plane, for one voxel length towards the light. A light
+ * in the plane, but for rounding, is in front of no place. */
+static void fill_exit_plane(const struct gz_clip_bounds *clip, const double step[3],
+			    struct gz_cast_shadow *shadow)
+{
+	const double nearing = gz_dot3(clip->plane, step);
+	const bool faces = nearing > 1e-9;
+	for (int i = 0; i < 4; i++)
+		shadow->exit_plane[i] = faces ? (float)(clip->plane[i] / nearing) : 0;
+	if (!faces)
+		shadow->exit_plane[3] = 3e38F;
+}
+
 /* Where steps towards the light go, for a light's direction in the world. */
 static void fill_shadow(const struct gz_volume *volume, const int factor[3],
 			const struct gz_ray_params *rays, const double towards[3],
 			struct gz_cast_shadow *shadow)
 {
 	static const double first_datum[3] = { -0.5, -0.5, -0.5 };
-	double half[3], box[3], through = INFINITY;
+	double half[3], box[3], steps[3], through = INFINITY;
 	const double voxel_length = gz_volume_voxel_length(volume);
 	struct gz_clip_bounds clip;
 	gz_volume_half_extent(volume, half);
 	for (int axis = 0; axis < 3; axis++)
 		box[axis] = (double)volume->dims[axis] / factor[axis];
-	gz_clip_region_place(&rays->clip, box, first_datum, &clip);
+	gz_clip_region_place(&rays->clip, volume, box, first_datum, &clip);
 	for (int axis = 0; axis < 3; axis++) {
 		const double raw = towards[axis] * voxel_length * box[axis] / (2 * half[axis]);
 		const double step = fabs(raw) < 1e-9 ? 1e-9 : raw;
+		steps[axis] = raw;
 		shadow->towards[axis] = (float)step;
 		shadow->inverse[axis] = (float)(1 / step);
 		shadow->exit[axis] = (float)(step > 0 ? clip.greatest : clip.least)[axis];
 		through = fmin(through, box[axis] / fabs(step));
 	}
+	fill_exit_plane(&clip, steps, shadow);
 	shadow->steps = rays->light.shadow_steps;
 	shadow->reach =
 		(float)fmax(fmin(rays->light.shadow_reach, through), (double)GZ_SHADOW_START);

@@ -33,7 +33,10 @@ struct gz_cast_shadow {
 	float reach;      /**< of the last step's end */
 	float towards[3]; /**< one voxel length towards the light; no component is 0 */
 	float inverse[3]; /**< 1 / towards */
-	float exit[3];    /**< the faces of the clip region that face the light */
+	float exit[3];    /**< the faces of the clip box that face the light */
+	/** The way to the clip plane, if that faces the light: exit_plane[3] less the dot product
+	 *  of the place and the others; else very long. */
+	float exit_plane[4];
 	int levels;
 	struct gz_cast_cells level[GZ_SHADOW_LEVELS];
 	float kept_per_length[GZ_SHADOW_LEVELS]; /**< turns a cell of the level into powers of two

@@ -13,17 +13,16 @@ struct shadow_job {
 	const struct gz_volume *volume;
 	const struct gz_transfer_table *table;
 	struct gz_shadow_cells *cells;
-	int index;                              /* of the level */
-	int from[3], to[3];                     /* voxels within the clip region, [from, to) */
+	int index; /* of the level */
+	struct gz_clip_voxels shown;
 	float by_entry[GZ_TRANSFER_TABLE_MOST]; /* what a voxel lets through, by its entry */
 	float by_value[STORED_VALUES];          /* the same by its stored value */
 };
 
 static float voxel_through(const struct shadow_job *job, const int at[3])
 {
-	for (int axis = 0; axis < 3; axis++)
-		if (at[axis] < job->from[axis] || at[axis] >= job->to[axis])
-			return 1;
+	if (!gz_clip_voxels_hold(&job->shown, at))
+		return 1;
 	const struct gz_volume *volume = job->volume;
 	const size_t index = ((size_t)at[2] * (size_t)volume->dims[1] + (size_t)at[1]) *
 				     (size_t)volume->dims[0] +
@@ -154,7 +153,7 @@ enum gz_result gz_shadow_cells_make(const struct gz_volume *volume,
 	job->volume = volume;
 	job->table = table;
 	job->cells = cells;
-	gz_clip_region_voxels(clip, volume->dims, job->from, job->to);
+	gz_clip_region_voxels(clip, volume, &job->shown);
 	find_voxels_through(job);
 	for (; job->index < cells->count; job->index++)
 		shadow_rows(workers, job);

@@ -228,7 +228,8 @@ static enum gz_result cut_volume(struct slicing *slicing, const struct gz_ray_fr
 		edges[axis] = 2 * request.half[axis];
 		corner[axis] = -request.half[axis];
 	}
-	gz_clip_region_place(&slicing->rays->clip, edges, corner, &request.shown);
+	gz_clip_region_place(&slicing->rays->clip, slicer->scene.volume, edges, corner,
+			     &request.shown);
 	const enum gz_result result = gz_slice_cut_make(&request, &slicer->cut);
 	if (result == GZ_ERR_NO_MEM)
 		gz_err(slicer->log, "no memory for %d slices", request.count);

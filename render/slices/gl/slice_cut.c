@@ -20,47 +20,6 @@ static void project_box(const struct gz_ray_inverse *inverse, const double least
 	}
 }
 
-/* Order corners by the angle at which their centre sees them. */
-static void order_corners(double polygon[GZ_SLICE_CORNERS_MAX][4], int count)
-{
-	double centre[2] = { 0, 0 }, angles[GZ_SLICE_CORNERS_MAX];
-	for (int i = 0; i < count; i++)
-		for (int axis = 0; axis < 2; axis++)
-			centre[axis] += polygon[i][axis] / count;
-	for (int i = 0; i < count; i++) {
-		double corner[4];
-		const double angle = atan2(polygon[i][1] - centre[1], polygon[i][0] - centre[0]);
-		int place = i;
-		memcpy(corner, polygon[i], sizeof corner);
-		for (; place > 0 && angles[place - 1] > angle; place--) {
-			angles[place] = angles[place - 1];
-			memcpy(polygon[place], polygon[place - 1], sizeof corner);
-		}
-		angles[place] = angle;
-		memcpy(polygon[place], corner, sizeof corner);
-	}
-}
-
-int gz_slice_polygon(const double corners[8][4], double depth,
-		     double out_polygon[GZ_SLICE_CORNERS_MAX][4])
-{
-	int count = 0;
-	for (int axis = 0; axis < 3; axis++)
-		for (int i = 0; i < 8; i++) {
-			const double *a = corners[i], *b = corners[i | 1 << axis];
-			/* A corner on the plane counts as behind it, for all its edges. */
-			if (i >> axis & 1 || (a[3] < depth) == (b[3] < depth) ||
-			    count == GZ_SLICE_CORNERS_MAX)
-				continue;
-			const double share = (depth - a[3]) / (b[3] - a[3]);
-			for (int k = 0; k < 4; k++)
-				out_polygon[count][k] = a[k] + share * (b[k] - a[k]);
-			count++;
-		}
-	order_corners(out_polygon, count);
-	return count;
-}
-
 static struct gz_slice_corner corner_of(const double from[4], double near)
 {
 	return (struct gz_slice_corner) {
@@ -82,14 +41,52 @@ static void append_polygon(struct gz_slice_cut *cut, int *corner_count,
 	}
 }
 
-static void cut_shown_part(struct gz_slice_cut *cut, const double shown[8][4])
+/* How far beyond the clip plane a corner lies. */
+static double corner_beyond(const struct gz_slice_request *request, const double corner[4])
+{
+	const struct gz_ray_frame *rays = &request->rays;
+	const double x = corner[0] / corner[2], y = corner[1] / corner[2];
+	double at[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = rays->origin00[axis] + x * rays->origin_dx[axis] +
+			   y * rays->origin_dy[axis] +
+			   corner[3] * (rays->direction00[axis] + x * rays->direction_dx[axis] +
+					y * rays->direction_dy[axis]);
+	return gz_clip_beyond(&request->shown, at);
+}
+
+/* Leave of a polygon what the clip plane keeps: Sutherland and Hodgman, Reentrant Polygon Clipping,
+ * CACM 17(1), 1974. Returns the number of corners. */
+static int keep_by_plane(const struct gz_slice_request *request, int count,
+			 double polygon[GZ_SLICE_CORNERS_MAX][4])
+{
+	double kept[GZ_SLICE_CORNERS_MAX][4];
+	int kept_count = 0;
+	for (int i = 0; i < count; i++) {
+		const double *from = polygon[i], *to = polygon[(i + 1) % count];
+		const double here = corner_beyond(request, from), next = corner_beyond(request, to);
+		if (here <= 0 && kept_count < GZ_SLICE_CORNERS_MAX)
+			memcpy(kept[kept_count++], from, sizeof kept[0]);
+		if ((here <= 0) == (next <= 0) || kept_count == GZ_SLICE_CORNERS_MAX)
+			continue;
+		for (int k = 0; k < 4; k++)
+			kept[kept_count][k] = from[k] + here / (here - next) * (to[k] - from[k]);
+		kept_count++;
+	}
+	memcpy(polygon, kept, (size_t)kept_count * sizeof kept[0]);
+	return kept_count;
+}
+
+static void cut_shown_part(const struct gz_slice_request *request, const double shown[8][4],
+			   struct gz_slice_cut *cut)
 {
 	int corner_count = 0;
 	for (int i = 0; i < cut->count; i++) {
 		double polygon[GZ_SLICE_CORNERS_MAX][4];
 		const double depth = cut->near + (i + 0.5) * cut->distance;
 		cut->first[i] = corner_count;
-		const int count = gz_slice_polygon(shown, depth, polygon);
+		const int of_box = gz_box_polygon(shown, depth, polygon);
+		const int count = keep_by_plane(request, of_box, polygon);
 		append_polygon(cut, &corner_count, polygon, count);
 	}
 	cut->first[cut->count] = corner_count;
@@ -123,7 +120,8 @@ static bool same_request(const struct gz_slice_request *a, const struct gz_slice
 	       same_numbers(a->rays.direction_dy, b->rays.direction_dy, 3) &&
 	       same_numbers(a->half, b->half, 3) && a->count == b->count &&
 	       same_numbers(a->shown.least, b->shown.least, 3) &&
-	       same_numbers(a->shown.greatest, b->shown.greatest, 3);
+	       same_numbers(a->shown.greatest, b->shown.greatest, 3) &&
+	       same_numbers(a->shown.plane, b->shown.plane, 4);
 }
 
 /* From the nearest to the farthest corner, but not behind the eye. */
@@ -158,7 +156,7 @@ enum gz_result gz_slice_cut_make(const struct gz_slice_request *request, struct 
 	cut->distance = (far - cut->near) / request->count;
 	if (cut->distance > 0)
 		cut->count = request->count;
-	cut_shown_part(cut, shown);
+	cut_shown_part(request, shown, cut);
 	cut->made_for = *request;
 	cut->valid = true;
 	cut->revision++;

@@ -17,8 +17,8 @@
 #include "render/data/clip_region.h"
 #include "render/picture/camera.h"
 
-/** A box and a plane share at most so many corners. */
-#define GZ_SLICE_CORNERS_MAX 6
+/** A slice has at most so many corners: the clip plane can give it one more than a box does. */
+#define GZ_SLICE_CORNERS_MAX (GZ_BOX_POLYGON_MAX + 1)
 
 /** A corner of a slice. The vertex shader reads it. */
 struct gz_slice_corner {
@@ -49,17 +49,6 @@ struct gz_slice_cut {
 	bool valid;        /**< made_for holds */
 	uint64_t revision; /**< increased by every new cut */
 };
-
-/**
- * The polygon in which a plane of one depth cuts a box.
- *
- * @param corners  of the box, as x, y, w and depth; bit i of a corner's number chooses the upper
- * end along axis i
- * @param[out] out_polygon  its corners in order around it
- * @return their number: 0, or 3 to GZ_SLICE_CORNERS_MAX
- */
-int gz_slice_polygon(const double corners[8][4], double depth,
-		     double out_polygon[GZ_SLICE_CORNERS_MAX][4]);
 
 /**
  * Cut a box, unless it has been cut for an equal request.

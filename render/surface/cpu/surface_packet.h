@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdalign.h>
 
+#include "render/raycast/cpu/simd_clip.h"
 #include "render/raycast/cpu/simd_light.h"
 #include "render/surface/cpu/surface_cast.h"
 
@@ -52,6 +53,7 @@ SIMD vm clip_lanes(const struct gz_surface_cast *cast, const vf origin[3], const
 		*from = vf_max(*from, vf_min(low, high));
 		*to = vf_min(*to, vf_max(low, high));
 	}
+	cut_by_plane(cast->frame.clip_plane, origin, direction, from, to);
 	return vf_less(*from, *to);
 }
 

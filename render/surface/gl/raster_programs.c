@@ -11,6 +11,7 @@ extern const char gz_glsl_light_constants_h[];
 extern const char gz_glsl_shine_glsl[];
 extern const char gz_glsl_surface_block_glsl[];
 extern const char gz_glsl_surroundings_glsl[];
+extern const char gz_glsl_clip_distances_glsl[];
 extern const char gz_glsl_raster_place_glsl[];
 extern const char gz_glsl_raster_rays_glsl[];
 extern const char gz_glsl_surface_vert[];
@@ -29,6 +30,9 @@ _Static_assert(BLOCK == GZ_GL_BLOCK_TECHNIQUE, "the block is bound there");
  * filter reads lie up to 2 from its place along each axis. Chosen: the least without spots on the
  * tests' surfaces and on bone of a CT. */
 #define SHADOW_LIFT 3.0
+
+/* The length of gl_ClipDistance. */
+enum { CLIP_DISTANCES = 7 };
 
 #define TEXT_OF(number)      #number
 #define DEFINE(name, number) "#define " name " " TEXT_OF(number) "\n"
@@ -67,6 +71,7 @@ void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_
 	memcpy(out_block->view_rows, view->rows, sizeof view->rows);
 	copy3(frame->clip_least, 0, out_block->clip_least);
 	copy3(frame->clip_greatest, 0, out_block->clip_greatest);
+	memcpy(out_block->clip_plane, frame->clip_plane, sizeof frame->clip_plane);
 	copy3(light->towards, 0, out_block->light_towards);
 	memcpy(out_block->shadow_rows, shadow->rows, sizeof shadow->rows);
 	gz_gl_surroundings_fill(&frame->around, &out_block->around);
@@ -74,15 +79,25 @@ void gz_raster_block_fill(const struct gz_surface_frame *frame, const struct gz_
 
 /* What each program is made of. */
 static const struct {
-	const char *place, *vertex_name, *vertex, *fragment_name, *fragment;
+	const char *clip, *place, *vertex_name, *vertex, *fragment_name, *fragment;
 } texts[GZ_RASTER_PROGRAMS] = {
-	[GZ_RASTER_SURFACE] = { gz_glsl_raster_place_glsl, "surface.vert", gz_glsl_surface_vert,
-				"surface.frag", gz_glsl_surface_frag },
-	[GZ_RASTER_BEHIND] = { "", "behind.vert", gz_glsl_behind_vert, "behind.frag",
+	[GZ_RASTER_SURFACE] = { gz_glsl_clip_distances_glsl, gz_glsl_raster_place_glsl,
+				"surface.vert", gz_glsl_surface_vert, "surface.frag",
+				gz_glsl_surface_frag },
+	[GZ_RASTER_BEHIND] = { "", "", "behind.vert", gz_glsl_behind_vert, "behind.frag",
 			       gz_glsl_behind_frag },
-	[GZ_RASTER_SHADOW] = { "", "shadow.vert", gz_glsl_shadow_vert, "shadow.frag",
-			       gz_glsl_shadow_frag },
+	[GZ_RASTER_SHADOW] = { gz_glsl_clip_distances_glsl, "", "shadow.vert", gz_glsl_shadow_vert,
+			       "shadow.frag", gz_glsl_shadow_frag },
 };
+
+void gz_raster_clip(bool on)
+{
+	for (GLenum i = 0; i < CLIP_DISTANCES; i++)
+		if (on)
+			glEnable(GL_CLIP_DISTANCE0 + i);
+		else
+			glDisable(GL_CLIP_DISTANCE0 + i);
+}
 
 void gz_raster_shaders(enum gz_raster_program program, struct gz_gl_shader out_shaders[2])
 {
@@ -91,7 +106,7 @@ void gz_raster_shaders(enum gz_raster_program program, struct gz_gl_shader out_s
 		.name = texts[program].vertex_name,
 		.parts = { numbers, gz_gl_surroundings_numbers, gz_glsl_light_constants_h,
 			   gz_glsl_surroundings_glsl, gz_glsl_surface_block_glsl,
-			   texts[program].place, texts[program].vertex },
+			   texts[program].clip, texts[program].place, texts[program].vertex },
 		.with_430 = true,
 	};
 	out_shaders[1] = (struct gz_gl_shader) {

@@ -5,6 +5,7 @@
 #ifndef GZ_RENDER_SURFACE_GL_RASTER_PROGRAMS_H
 #define GZ_RENDER_SURFACE_GL_RASTER_PROGRAMS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/log.h"
@@ -19,7 +20,7 @@ struct gz_raster_block {
 	float origin00[4], origin_dx[4], origin_dy[4];
 	float direction00[4], direction_dx[4], direction_dy[4];
 	float view_rows[4][4];
-	float clip_least[4], clip_greatest[4];
+	float clip_least[4], clip_greatest[4], clip_plane[4];
 	float light_towards[4];
 	float light_terms[4];
 	float scale[4];
@@ -63,6 +64,10 @@ enum gz_result gz_raster_programs_make(struct gz_raster_programs *programs,
 
 /** Delete them. Needs a current context. */
 void gz_raster_programs_free(struct gz_raster_programs *programs);
+
+/** Clip vertices to the clip region, as far as shaders/clip_distances.glsl tells, or not any
+ * longer. Needs a current context. */
+void gz_raster_clip(bool on);
 
 /** The vertex and the fragment shader of a program. */
 void gz_raster_shaders(enum gz_raster_program program, struct gz_gl_shader out_shaders[2]);

@@ -21,9 +21,6 @@
 /* Moments of a frame. */
 enum { MARK_START, MARK_DRAWN, MARK_END };
 
-/* Distances of gl_ClipDistance that the vertex shaders write. */
-enum { CLIP_DISTANCES = 6 };
-
 static const char remedy[] = "use --backend cpu";
 
 struct gz_surface_raster {
@@ -235,15 +232,6 @@ static enum gz_result prepare_frame(struct rastering *rastering, const struct gz
 		       : result;
 }
 
-static void set_clipping(bool on)
-{
-	for (GLenum i = 0; i < CLIP_DISTANCES; i++)
-		if (on)
-			glEnable(GL_CLIP_DISTANCE0 + i);
-		else
-			glDisable(GL_CLIP_DISTANCE0 + i);
-}
-
 /* Use a program for a layer. */
 static void use_for_layer(const struct gz_surface_raster *raster, enum gz_raster_program program,
 			  const struct gz_raster_layer *layer)
@@ -274,12 +262,12 @@ static void draw_raster_layer(const struct rastering *rastering, int index)
 	if (rastering->any) {
 		use_for_layer(raster, GZ_RASTER_SURFACE, layer);
 		glUniform2f(GZ_RASTER_POINTS, (float)layer->points[0], (float)layer->points[1]);
-		set_clipping(rastering->frame.clipped);
+		gz_raster_clip(rastering->frame.clipped);
 		gz_raster_meshes_draw_seen(
 			&raster->meshes, &raster->surfaces, &rastering->shot->rays->surface,
 			&rastering->view, layer,
 			(struct gz_raster_locations) { GZ_RASTER_ID, GZ_RASTER_COLOUR });
-		set_clipping(false);
+		gz_raster_clip(false);
 	}
 	if (rastering->frame.around.kind != GZ_SURROUNDINGS_NONE)
 		draw_behind(raster, layer);
@@ -290,10 +278,10 @@ static void draw_raster_layers(const struct rastering *rastering)
 	struct gz_surface_raster *raster = rastering->raster;
 	const struct gz_gl_outer_state outer = gz_gl_outer_state_leave();
 	if (casts_shadows(rastering)) {
-		set_clipping(rastering->frame.clipped);
+		gz_raster_clip(rastering->frame.clipped);
 		glUseProgram(raster->programs.names[GZ_RASTER_SHADOW]);
 		gz_raster_shadow_draw(&raster->shadow_map, &rastering->shadow, &raster->meshes);
-		set_clipping(false);
+		gz_raster_clip(false);
 	}
 	for (int i = 0; i < raster->layers.count; i++)
 		draw_raster_layer(rastering, i);

@@ -19,8 +19,10 @@ static void fill_clip(const struct gz_surface_meshes *meshes, const struct gz_cl
 		corner[axis] = -half[axis] * meshes->world_mm;
 		edges[axis] = -2 * corner[axis];
 	}
-	gz_clip_region_place(clip, edges, corner, &bounds);
-	frame->clipped = !gz_clip_region_same(clip, &gz_clip_whole);
+	gz_clip_region_place(clip, meshes->items[0].object.volume, edges, corner, &bounds);
+	frame->clipped = gz_clip_region_cuts(clip);
+	for (int i = 0; i < 4; i++)
+		frame->clip_plane[i] = (float)bounds.plane[i];
 	for (int axis = 0; axis < 3; axis++) {
 		frame->clip_least[axis] = (float)bounds.least[axis];
 		frame->clip_greatest[axis] = (float)bounds.greatest[axis];

@@ -22,6 +22,7 @@ struct gz_surface_frame {
 	float direction00[3], direction_dx[3], direction_dy[3];
 	bool clipped;
 	float clip_least[3], clip_greatest[3]; /**< only what lies between shows */
+	float clip_plane[4];                   /**< struct gz_clip_bounds */
 	struct gz_cast_light light;            /**< without occlusion */
 	bool shadows;
 	float lift;                         /**< how far above a surface its shadow rays begin */

@@ -5,6 +5,6 @@ layout(std140, binding = BLOCK) uniform Illustration
 	vec4 origin00, origin_dx, origin_dy; // of the rays of pixels
 	vec4 direction00, direction_dx, direction_dy;
 	vec4 view_rows[4]; // struct gz_raster_view
-	vec4 clip_least, clip_greatest;
+	vec4 clip_least, clip_greatest, clip_plane; // struct gz_clip_bounds of render/data/clip_region.h
 	vec4 lamp; // unit vector towards the lamp of plain light
 };

@@ -62,6 +62,17 @@ float jitter_of(uvec2 pixel, float phase)
 	return float(word.x >> 8) * (1.0 / 16777216.0);
 }
 
+// Leaves of a ray what the clip plane keeps. Without a plane it is crossed too far away to matter.
+void cut_by_plane(vec3 origin, vec3 along, inout float from, inout float to)
+{
+	float across = dot(clip_plane.xyz, along);
+	float at = (clip_plane.w - dot(clip_plane.xyz, origin)) / (abs(across) < 1e-12 ? 1e-12 : across);
+	if (across < 0.0)
+		from = max(from, at);
+	else
+		to = min(to, at);
+}
+
 // Cuts a ray by the whole box and by the shown part of it. Segments are counted from a jitter before the box.
 #ifdef HITS
 Ray set_up_ray(uvec2 at, float step_length, float phase, float hit_depth)
@@ -83,6 +94,7 @@ Ray set_up_ray(uvec2 at, float step_length, float phase)
 	float box_at = max(max(whole.x, whole.y), max(whole.z, 0.0));
 	float enter = max(max(near.x, near.y), max(near.z, 0.0));
 	float leave = min(min(far.x, far.y), far.z);
+	cut_by_plane(origin, ray.delta, enter, leave);
 #ifdef HITS
 	leave = min(leave, hit_depth / step_length);
 #endif

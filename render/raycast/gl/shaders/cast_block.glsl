@@ -7,6 +7,7 @@ layout(std140, binding = 1) uniform Cast
 	vec4 dims; // voxels
 	vec4 box;  // far corner: dims, or less for a coarser level of odd size
 	vec4 clip_least, clip_greatest;
+	vec4 clip_plane; // struct gz_clip_bounds of render/data/clip_region.h
 	vec4 cell_counts;
 	vec4 transfer_map; // scale and bias from stored value to share of the table; share of light at which a ray ends
 	vec4 light_towards; // unit vector in world directions; greatest share of the ambient light that is blocked

@@ -1,8 +1,6 @@
-// Where a vertex lies on a lattice of points, by view_rows, clip_least and clip_greatest of a block before this.
+// Where a vertex lies on a lattice of points, by view_rows of a block before this.
 layout(location = 0) uniform vec3 lattice; // pixel of the first point, spacing
 layout(location = 1) uniform vec2 points;  // columns, rows
-
-out float gl_ClipDistance[6];
 
 void place_vertex(vec3 at)
 {
@@ -11,8 +9,5 @@ void place_vertex(vec3 at)
 	float w = dot(view_rows[3], vertex);
 	vec2 point = (pixel - lattice.xy * w) / lattice.z + 0.5 * w;
 	gl_Position = vec4(2.0 * point / points - w, dot(view_rows[2], vertex), w);
-	for (int axis = 0; axis < 3; axis++) {
-		gl_ClipDistance[axis] = at[axis] - clip_least[axis];
-		gl_ClipDistance[3 + axis] = clip_greatest[axis] - at[axis];
-	}
+	clip_vertex(at);
 }

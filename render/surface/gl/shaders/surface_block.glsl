@@ -5,7 +5,7 @@ layout(std140, binding = BLOCK) uniform Surface
 	vec4 origin00, origin_dx, origin_dy; // of the rays of pixels
 	vec4 direction00, direction_dx, direction_dy;
 	vec4 view_rows[4]; // struct gz_raster_view
-	vec4 clip_least, clip_greatest;
+	vec4 clip_least, clip_greatest, clip_plane; // struct gz_clip_bounds of render/data/clip_region.h
 	vec4 light_towards; // unit vector
 	vec4 light_terms;   // ambient, diffuse, specular, shininess
 	vec4 scale;         // world units of a mm; light.reflection
