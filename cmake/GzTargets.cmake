@@ -197,6 +197,11 @@ function(gz_fuzz name)
 	set_tests_properties(fuzz.${name} PROPERTIES TIMEOUT ${gz_test_timeout_s} LABELS "fuzz;quick")
 endfunction()
 
+# Whether the processor may have AVX2 or AVX-512: their kernels are compiled, and chosen at run time.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+	set(GAZECAST_X86 ON)
+endif()
+
 # gz_cast_flags(FILE SET): compile FILE of this folder for one instruction set of the cpu backend.
 function(gz_cast_flags file set)
 	if(set STREQUAL avx2)
