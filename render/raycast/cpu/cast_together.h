@@ -1,7 +1,7 @@
 /*
  * Marching side by side: all rays of a tile at the same distance from the eye, so that one block of
  * voxels serves them all. A level is one step of all rays, counted from the first ray's first
- * sample. Sixteen levels at a time are tested for the tile as a whole, and those that show
+ * sample. As many levels as lanes are tested at a time for the tile as a whole, and those that show
  * something are listed before any is sampled. If one ray's cell shows something, all rays take
  * their samples; those in empty cells have no opacity. A part of the kernel, for sets with blocks:
  * see cast_kernel.h.
@@ -14,9 +14,6 @@
 #include "render/raycast/cpu/cast_block.h"
 #include "render/raycast/cpu/cast_shade.h"
 
-/* Widest extent of a tile's rays, voxels, for blocks. Chosen by measuring: up to 2 a block holds
- * all rays wherever they are, at 3 only by chance, and single loads serve the rest. */
-#define TOGETHER_SPREAD 2.5F
 /* Widest extents for wide blocks, along x and across. Rays that far apart gain more from a block,
  * so that a block pays even if it holds them only at the near side of the volume. */
 #define TOGETHER_SPREAD_WIDE   7.0F
@@ -50,9 +47,8 @@ struct beam {
  * are level with it, which may lie before they enter the box. */
 SIMD vf level_start(const struct rays *rays)
 {
-	const float nearest = _mm512_mask_reduce_min_ps(rays->hit, rays->zero + rays->first);
-	return vf_set(0.5F) + _mm512_roundscale_ps(vf_set(nearest) - rays->zero,
-						   _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+	const float nearest = vf_least_of(rays->zero + rays->first, rays->hit);
+	return vf_set(0.5F) + vf_nearest(vf_set(nearest) - rays->zero);
 }
 
 /* The box around the places at k. */
@@ -61,8 +57,8 @@ SIMD void beam_corners(const struct rays *rays, vf k, __m128 *low, __m128 *high)
 	float least[3], most[3];
 	for (int axis = 0; axis < 3; axis++) {
 		const vf at = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-		least[axis] = _mm512_mask_reduce_min_ps(rays->hit, at);
-		most[axis] = _mm512_mask_reduce_max_ps(rays->hit, at);
+		least[axis] = vf_least_of(at, rays->hit);
+		most[axis] = vf_greatest_of(at, rays->hit);
 	}
 	const __m128 slack = _mm_set1_ps(TOGETHER_SLACK);
 	*low = _mm_sub_ps(_mm_setr_ps(least[0], least[1], least[2], 0), slack);
@@ -85,7 +81,7 @@ SIMD __m128 absolute_of_four(__m128 x)
 SIMD struct beam beam_of(const struct rays *rays)
 {
 	struct beam beam = { .first = level_start(rays) };
-	beam.count = ceilf(_mm512_mask_reduce_max_ps(rays->hit, rays->end - beam.first));
+	beam.count = ceilf(vf_greatest_of(rays->end - beam.first, rays->hit));
 	__m128 low, high;
 	beam_corners(rays, beam.first, &beam.low, &beam.high);
 	beam_corners(rays, beam.first + vf_set(beam.count), &low, &high);
@@ -112,7 +108,7 @@ SIMD vi beam_cells(const struct gz_cast_grid *grid, const __m128 *corner, const 
 	return vi_min(vi_trunc(vf_max(place, vf_set(0))), vi_set((int32_t)grid->last[axis]));
 }
 
-/* Which of sixteen levels show something in any cell that the beam's box touches. The box is no
+/* Which of these levels show something in any cell that the beam's box touches. The box is no
  * longer than a cell. */
 SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level)
 {
@@ -121,13 +117,12 @@ SIMD vm beam_shows(const struct gz_cast *cast, const struct beam *beam, vf level
 	for (int axis = 0; axis < 3; axis++) {
 		const vi cell = beam_cells(grid, &beam->low, &beam->low_step, axis, level);
 		const vi last = beam_cells(grid, &beam->high, &beam->high_step, axis, level);
-		axes = _mm512_mask_or_epi32(axes, _mm512_cmplt_epi32_mask(cell, last), axes,
-					    vi_set(1 << axis));
+		axes = vi_or(axes, vi_select(vi_less(cell, last), vi_set(1 << axis), vi_set(0)));
 		index = vi_add(index, vi_mul(cell, vi_set(grid->stride[axis])));
 	}
 	const vm asked = vf_less(level, vf_set(beam->count));
 	const vi flags = vi_gather(grid->flags, index, 1, asked);
-	return _mm512_mask_test_epi32_mask(asked, _mm512_srlv_epi32(flags, axes), vi_set(1));
+	return vm_and(asked, vi_nonzero(vi_and(vi_shift_right_each(flags, axes), vi_set(1))));
 }
 
 /* How many levels after one that shows nothing are empty too, by the macrocells. */
@@ -153,15 +148,13 @@ SIMD float beam_empty(const struct gz_cast *cast, const struct beam *beam, float
 SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float *from,
 		     struct level_list *list)
 {
-	const vf sixteen = _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 	int count = 0;
 	while (*from < beam->count && count < LEVELS_LISTED) {
-		const vf level = vf_set(*from) + sixteen;
+		const vf level = vf_set(*from) + vf_counting();
 		const vm shows = beam_shows(cast, beam, level);
 		*from += SIMD_LANES;
-		if (shows) {
-			vf_store(list->levels + count, _mm512_maskz_compress_ps(shows, level));
-			count += (int)vm_count(shows);
+		if (vm_any(shows)) {
+			count += vf_store_packed(list->levels + count, level, shows);
 		} else {
 			*from += beam_empty(cast, beam, *from - 1);
 		}
@@ -264,8 +257,8 @@ SIMD void find_showing(const struct march *m, const struct beam *beam,
 		const vm shows = fine_shows(cast, at, within);
 		showing->level[kept] = levels[i];
 		showing->rays[kept] = shows;
-		_mm512_storeu_si512(showing->first[kept],
-				    _mm512_maskz_mov_epi32(shows, first_voxel(cast, at)));
+		vi_store((uint32_t *)showing->first[kept],
+			 vi_select(shows, first_voxel(cast, at), vi_set(0)));
 		kept += vm_any(shows);
 	}
 	showing->count = kept;
@@ -321,9 +314,9 @@ SIMD uint32_t march_beam(const struct march *m, const struct look_up *look_up,
 	uint32_t samples = 0;
 	float from = 0;
 	while (vm_any(on.alive) && list_levels(m->cast, beam, &from, &list)) {
-		if (company == SIDE_BY_SIDE)
+		if (block_exists(m->reading.type, 0) && company == SIDE_BY_SIDE)
 			samples += take_together(m, look_up, 0, beam, &list, &on);
-		else if (m->reading.type != GZ_VOXEL_F32 && company == IN_A_ROW)
+		else if (block_exists(m->reading.type, 1) && company == IN_A_ROW)
 			samples += take_together(m, look_up, 1, beam, &list, &on);
 		else
 			samples += take_scattered(m, look_up, beam, &list, &on);

@@ -6,6 +6,8 @@
 
 #define SIMD_LANES   8
 #define SIMD_GATHERS /* a look-up for each sample is cheap: fine_cells.h */
+/* registers hold a block of voxels: cast_block.h */
+#define SIMD_BLOCKS "render/raycast/cpu/block_avx2.h"
 
 typedef __m256 vf;
 typedef __m256i vi;
@@ -180,8 +182,85 @@ SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second
 	*first = _mm256_castpd_ps(_mm256_permute4x64_pd(evens, 0xD8));
 	*second = _mm256_castpd_si256(_mm256_permute4x64_pd(odds, 0xD8));
 }
-/* gather_pair() of all lanes. */
+/* Two lanes' 64-bit words from base + index * 8 bytes. */
+SIMD __m128 load_two(const char *base, int32_t first, int32_t second)
+{
+	int64_t words[2];
+	memcpy(&words[0], base + 8 * (int64_t)first, sizeof words[0]);
+	memcpy(&words[1], base + 8 * (int64_t)second, sizeof words[1]);
+	return _mm_castsi128_ps(_mm_set_epi64x(words[1], words[0]));
+}
+/* gather_pair() of all lanes; single loads are faster than gathers. */
 SIMD void load_pairs(const void *base, vi index, vf *first, vi *second)
 {
-	gather_pair(base, index, vm_all(), first, second);
+	int32_t lane[SIMD_LANES];
+	memcpy(lane, &index, sizeof lane);
+	/* so that shuffles, which work in halves, leave the lanes in order */
+	const vf even =
+		_mm256_set_m128(load_two(base, lane[4], lane[5]), load_two(base, lane[0], lane[1]));
+	const vf odd =
+		_mm256_set_m128(load_two(base, lane[6], lane[7]), load_two(base, lane[2], lane[3]));
+	*first = _mm256_shuffle_ps(even, odd, 0x88);
+	*second = _mm256_castps_si256(_mm256_shuffle_ps(even, odd, 0xDD));
+}
+
+/* What only blocks of voxels and beams need. */
+
+/* 0, 1, 2, ... */
+SIMD vf vf_counting(void)
+{
+	return _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+}
+/* To the nearest whole number, to the even one of two. */
+SIMD vf vf_nearest(vf a)
+{
+	return _mm256_round_ps(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+}
+/* The least and the greatest of the lanes of a mask. */
+SIMD float vf_least_of(vf a, vm mask)
+{
+	const vf kept = vf_select(mask, a, vf_set(__builtin_inff()));
+	__m128 least = _mm_min_ps(_mm256_castps256_ps128(kept), _mm256_extractf128_ps(kept, 1));
+	least = _mm_min_ps(least, _mm_movehl_ps(least, least));
+	return _mm_cvtss_f32(_mm_min_ss(least, _mm_movehdup_ps(least)));
+}
+SIMD float vf_greatest_of(vf a, vm mask)
+{
+	return -vf_least_of(vf_set(0) - a, mask);
+}
+/* Store the lanes of a mask side by side. Writes up to SIMD_LANES floats. Returns how many. */
+SIMD int vf_store_packed(float *x, vf a, vm mask)
+{
+	float lane[SIMD_LANES];
+	int count = 0;
+	_mm256_storeu_ps(lane, a);
+	for (unsigned bits = (unsigned)_mm256_movemask_ps(mask); bits; bits &= bits - 1)
+		x[count++] = lane[__builtin_ctz(bits)];
+	return count;
+}
+SIMD vi vi_xor(vi a, vi b)
+{
+	return _mm256_xor_si256(a, b);
+}
+SIMD vm vi_less(vi a, vi b)
+{
+	return _mm256_castsi256_ps(_mm256_cmpgt_epi32(b, a));
+}
+SIMD vi vi_shift_right_each(vi a, vi by)
+{
+	return _mm256_srlv_epi32(a, by);
+}
+/* The greater of unsigned numbers, and whether a is at least b. */
+SIMD vi vi_greater_unsigned(vi a, vi b)
+{
+	return _mm256_max_epu32(a, b);
+}
+SIMD vm vi_reaches_unsigned(vi a, vi b)
+{
+	return _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_max_epu32(a, b), a));
+}
+/* Of two signed words a lane: low * low + high * high. */
+SIMD vi vi_sum_of_products(vi a, vi b)
+{
+	return _mm256_madd_epi16(a, b);
 }

@@ -8,7 +8,8 @@
 
 #define SIMD_LANES   16
 #define SIMD_GATHERS /* a look-up for each sample is cheap: fine_cells.h */
-#define SIMD_BLOCKS  /* registers hold a block of voxels: cast_block.h */
+/* registers hold a block of voxels: cast_block.h */
+#define SIMD_BLOCKS "render/raycast/cpu/block_avx512.h"
 
 typedef __m512 vf;
 typedef __m512i vi;
@@ -201,4 +202,58 @@ SIMD void load_pairs(const void *base, vi index, vf *first, vi *second)
 	const vi low = load_eight(base, lane), high = load_eight(base, lane + 8);
 	*first = vf_bits(_mm512_permutex2var_epi32(low, evens, high));
 	*second = _mm512_permutex2var_epi32(low, odds, high);
+}
+
+/* What only blocks of voxels and beams need. */
+
+/* 0, 1, 2, ... */
+SIMD vf vf_counting(void)
+{
+	return _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+/* To the nearest whole number, to the even one of two. */
+SIMD vf vf_nearest(vf a)
+{
+	return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+}
+/* The least and the greatest of the lanes of a mask. */
+SIMD float vf_least_of(vf a, vm mask)
+{
+	return _mm512_mask_reduce_min_ps(mask, a);
+}
+SIMD float vf_greatest_of(vf a, vm mask)
+{
+	return _mm512_mask_reduce_max_ps(mask, a);
+}
+/* Store the lanes of a mask side by side. Writes up to SIMD_LANES floats. Returns how many. */
+SIMD int vf_store_packed(float *x, vf a, vm mask)
+{
+	vf_store(x, _mm512_maskz_compress_ps(mask, a));
+	return __builtin_popcount(mask);
+}
+SIMD vi vi_xor(vi a, vi b)
+{
+	return _mm512_xor_si512(a, b);
+}
+SIMD vm vi_less(vi a, vi b)
+{
+	return _mm512_cmplt_epi32_mask(a, b);
+}
+SIMD vi vi_shift_right_each(vi a, vi by)
+{
+	return _mm512_srlv_epi32(a, by);
+}
+/* The greater of unsigned numbers, and whether a is at least b. */
+SIMD vi vi_greater_unsigned(vi a, vi b)
+{
+	return _mm512_max_epu32(a, b);
+}
+SIMD vm vi_reaches_unsigned(vi a, vi b)
+{
+	return _mm512_cmpge_epu32_mask(a, b);
+}
+/* Of two signed words a lane: low * low + high * high. */
+SIMD vi vi_sum_of_products(vi a, vi b)
+{
+	return _mm512_madd_epi16(a, b);
 }

@@ -1,0 +1,147 @@
+/* Blocks of voxels in eight-lane registers: cast_block.h explains them, and what is defined here
+ * for it. A slice of 4 x 4 voxels fills the table of a byte shuffle, so each lane looks its four
+ * neighbours up in all four slices and keeps those of two. */
+#ifndef GZ_RENDER_RAYCAST_CPU_BLOCK_AVX2_H
+#define GZ_RENDER_RAYCAST_CPU_BLOCK_AVX2_H
+
+/* Widest extent of a tile's rays, voxels, for blocks. */
+#define TOGETHER_SPREAD 2.5F
+
+/* The slices' bytes, of 16-bit voxels the low ones. Both halves of a register are alike. */
+struct block_voxels {
+	vi bytes[BLOCK_EDGE];
+	vi high_bytes[BLOCK_EDGE]; /* of 16-bit voxels, less 128 */
+};
+
+SIMD int block_exists(enum gz_voxel_type type, int wide)
+{
+	return !wide && type != GZ_VOXEL_F32;
+}
+
+SIMD vi both_halves(__m128i half)
+{
+	return _mm256_broadcastsi128_si256(half);
+}
+
+SIMD void block_slice_u8(const uint8_t *from, int64_t row, vi *bytes)
+{
+	int32_t rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], from + y * row, sizeof rows[y]);
+	*bytes = both_halves(_mm_setr_epi32(rows[0], rows[1], rows[2], rows[3]));
+}
+
+SIMD void block_slice_u16(const uint16_t *from, int64_t row, vi *low, vi *high)
+{
+	int64_t rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], from + y * row, sizeof rows[y]);
+	const __m128i before = _mm_set_epi64x(rows[1], rows[0]);
+	const __m128i after = _mm_set_epi64x(rows[3], rows[2]);
+	const __m128i byte = _mm_set1_epi16(0xFF);
+	*low = both_halves(
+		_mm_packus_epi16(_mm_and_si128(before, byte), _mm_and_si128(after, byte)));
+	const __m128i upper = _mm_packus_epi16(_mm_srli_epi16(before, 8), _mm_srli_epi16(after, 8));
+	*high = both_halves(_mm_xor_si128(upper, _mm_set1_epi8((int8_t)0x80)));
+}
+
+SIMD void block_load(enum gz_voxel_type type, int wide, const void *from, int64_t row,
+		     int64_t slice, struct block_voxels *block)
+{
+	(void)wide;
+	for (int z = 0; z < BLOCK_EDGE; z++)
+		if (type == GZ_VOXEL_U8)
+			block_slice_u8((const uint8_t *)from + z * slice, row, &block->bytes[z]);
+		else
+			block_slice_u16((const uint16_t *)from + z * slice, row, &block->bytes[z],
+					&block->high_bytes[z]);
+}
+
+/* The bytes that `control` names in the slices below and above a lane. Bits 4 and 5 of each byte of
+ * `control` are the number of the slice below. */
+SIMD void block_look_up(const vi slices[BLOCK_EDGE], vi control, vi *below, vi *above)
+{
+	/* shuffles ignore bits 4 to 6; blends follow bit 7 */
+	const vi odd = _mm256_slli_epi16(control, 3), second = _mm256_slli_epi16(control, 2);
+	vi found[BLOCK_EDGE];
+	for (int z = 0; z < BLOCK_EDGE; z++)
+		found[z] = _mm256_shuffle_epi8(slices[z], control);
+	*below = _mm256_blendv_epi8(_mm256_blendv_epi8(found[0], found[1], odd), found[2], second);
+	*above = _mm256_blendv_epi8(_mm256_blendv_epi8(found[1], found[2], odd), found[3], second);
+}
+
+/* In each lane the neighbours (x, y) = 00, 01, 10, 11. */
+SIMD void block_pairs_u8(const struct block_voxels *block, vi first, vi pairs[4])
+{
+	const vi own =
+		both_halves(_mm_setr_epi8(0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12));
+	const vi control = _mm256_add_epi8(_mm256_shuffle_epi8(first, own), vi_set(0x05010400));
+	const vi even = vi_set(0x00FF00FF);
+	vi side[2];
+	block_look_up(block->bytes, control, &side[0], &side[1]);
+	for (int z = 0; z < 2; z++) {
+		pairs[2 * z] = vi_and(side[z], even);
+		pairs[2 * z + 1] = _mm256_srli_epi16(side[z], 8);
+	}
+}
+
+/* In each half of a register the neighbours along x of all its lanes, and those at the next y: so
+ * unpacking puts them in order. */
+SIMD void block_pairs_u16(const struct block_voxels *block, vi first, vi pairs[4])
+{
+	const vi own =
+		both_halves(_mm_setr_epi8(0, 0, 4, 4, 8, 8, 12, 12, 0, 0, 4, 4, 8, 8, 12, 12));
+	const vi offset =
+		both_halves(_mm_setr_epi8(0, 1, 0, 1, 0, 1, 0, 1, 4, 5, 4, 5, 4, 5, 4, 5));
+	const vi control = _mm256_add_epi8(_mm256_shuffle_epi8(first, own), offset);
+	vi low[2], high[2];
+	block_look_up(block->bytes, control, &low[0], &low[1]);
+	block_look_up(block->high_bytes, control, &high[0], &high[1]);
+	for (int z = 0; z < 2; z++) {
+		pairs[2 * z] = _mm256_unpacklo_epi8(low[z], high[z]);
+		pairs[2 * z + 1] = _mm256_unpackhi_epi8(low[z], high[z]);
+	}
+}
+
+SIMD void block_pairs(const struct block_voxels *block, enum gz_voxel_type type, int wide,
+		      const vf whole[3], vi pairs[4])
+{
+	(void)wide;
+	const vi first =
+		vi_round(vf_fma(whole[2], vf_set(16), vf_fma(whole[1], vf_set(4), whole[0])));
+	if (type == GZ_VOXEL_U8)
+		block_pairs_u8(block, first, pairs);
+	else
+		block_pairs_u16(block, first, pairs);
+}
+
+/* There are no blocks of floats. */
+SIMD vf block_mix_floats(const struct block_voxels *block, const vf whole[3], const vf share[3])
+{
+	(void)block, (void)whole, (void)share;
+	return vf_set(0);
+}
+
+/* Two neighbours along x for each lane, as words. Single loads are faster than gathers. */
+SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t from,
+			const int32_t index[SIMD_LANES])
+{
+	if (type == GZ_VOXEL_U8) {
+		const uint8_t *base = (const uint8_t *)voxels + from;
+		uint16_t pair[SIMD_LANES];
+		for (int lane = 0; lane < SIMD_LANES; lane++)
+			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
+		return _mm256_cvtepu8_epi16(_mm_setr_epi16(
+			(int16_t)pair[0], (int16_t)pair[1], (int16_t)pair[2], (int16_t)pair[3],
+			(int16_t)pair[4], (int16_t)pair[5], (int16_t)pair[6], (int16_t)pair[7]));
+	}
+	const uint16_t *base = (const uint16_t *)voxels + from;
+	int32_t pair[SIMD_LANES];
+	for (int lane = 0; lane < SIMD_LANES; lane++)
+		memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
+	return vi_xor(_mm256_setr_epi32(pair[0], pair[1], pair[2], pair[3], pair[4], pair[5],
+					pair[6], pair[7]),
+		      vi_set((int32_t)0x80008000));
+}
+
+#endif

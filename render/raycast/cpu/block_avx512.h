@@ -1,0 +1,201 @@
+/* Blocks of voxels in sixteen-lane registers: cast_block.h explains them, and what is defined here
+ * for it. */
+#ifndef GZ_RENDER_RAYCAST_CPU_BLOCK_AVX512_H
+#define GZ_RENDER_RAYCAST_CPU_BLOCK_AVX512_H
+
+/* Widest extent of a tile's rays, voxels, for blocks. Chosen by measuring: up to 2 a block holds
+ * all rays wherever they are, at 3 only by chance, and single loads serve the rest. */
+#define TOGETHER_SPREAD 2.5F
+
+struct block_voxels {
+	union {
+		vi words[BLOCK_EDGE]; /* of 8 and 16 bits: two slices a word, wide one */
+		vf slices[BLOCK_EDGE];
+	};
+};
+
+SIMD int block_exists(enum gz_voxel_type type, int wide)
+{
+	return !(wide && type == GZ_VOXEL_F32);
+}
+
+/* One slice: rows of four voxels, `stride` apart. */
+SIMD __m128i block_slice_u8(const uint8_t *from, int64_t stride)
+{
+	int32_t rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], from + y * stride, sizeof rows[y]);
+	return _mm_setr_epi32(rows[0], rows[1], rows[2], rows[3]);
+}
+
+SIMD __m256i block_slice_u16(const uint16_t *from, int64_t stride)
+{
+	int64_t rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], from + y * stride, sizeof rows[y]);
+	return _mm256_setr_epi64x(rows[0], rows[1], rows[2], rows[3]);
+}
+
+SIMD vf block_slice_f32(const float *from, int64_t stride)
+{
+	vf slice = _mm512_castps128_ps512(_mm_loadu_ps(from));
+	slice = _mm512_insertf32x4(slice, _mm_loadu_ps(from + stride), 1);
+	slice = _mm512_insertf32x4(slice, _mm_loadu_ps(from + 2 * stride), 2);
+	return _mm512_insertf32x4(slice, _mm_loadu_ps(from + 3 * stride), 3);
+}
+
+/* One slice of a wide block. */
+SIMD vi block_wide_slice(enum gz_voxel_type type, const void *from, int64_t stride)
+{
+	if (type == GZ_VOXEL_U8) {
+		int64_t rows[BLOCK_EDGE];
+		for (int y = 0; y < BLOCK_EDGE; y++)
+			memcpy(&rows[y], (const uint8_t *)from + y * stride, sizeof rows[y]);
+		return _mm512_cvtepu8_epi16(_mm256_setr_epi64x(rows[0], rows[1], rows[2], rows[3]));
+	}
+	__m128i rows[BLOCK_EDGE];
+	for (int y = 0; y < BLOCK_EDGE; y++)
+		memcpy(&rows[y], (const uint16_t *)from + y * stride, sizeof rows[y]);
+	const vi words =
+		_mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(rows[1], rows[0])),
+				   _mm256_set_m128i(rows[3], rows[2]), 1);
+	return _mm512_xor_si512(words, _mm512_set1_epi16((int16_t)0x8000));
+}
+
+SIMD void block_load_wide(enum gz_voxel_type type, const void *from, int64_t row, int64_t slice,
+			  struct block_voxels *block)
+{
+	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : 2;
+	for (int z = 0; z < BLOCK_EDGE; z++)
+		block->words[z] =
+			block_wide_slice(type, (const char *)from + z * slice * bytes, row);
+}
+
+SIMD void block_load(enum gz_voxel_type type, int wide, const void *from, int64_t row,
+		     int64_t slice, struct block_voxels *block)
+{
+	if (wide) {
+		block_load_wide(type, from, row, slice, block);
+		return;
+	}
+	if (type == GZ_VOXEL_F32) {
+		for (int z = 0; z < BLOCK_EDGE; z++)
+			block->slices[z] = block_slice_f32((const float *)from + z * slice, row);
+		return;
+	}
+	for (int half = 0; half < 2; half++) {
+		const int64_t low = 2 * half * slice, high = low + slice;
+		if (type == GZ_VOXEL_U8) {
+			const uint8_t *voxels = from;
+			block->words[half] = _mm512_cvtepu8_epi16(
+				_mm256_set_m128i(block_slice_u8(voxels + high, row),
+						 block_slice_u8(voxels + low, row)));
+		} else {
+			const uint16_t *voxels = from;
+			const vi words = _mm512_inserti64x4(
+				_mm512_castsi256_si512(block_slice_u16(voxels + low, row)),
+				block_slice_u16(voxels + high, row), 1);
+			/* multiplications take signed words */
+			block->words[half] =
+				_mm512_xor_si512(words, _mm512_set1_epi16((int16_t)0x8000));
+		}
+	}
+}
+
+SIMD void block_pairs_edge(const struct block_voxels *block, const vf whole[3], vi pairs[4])
+{
+	/* The index of a word in the low half of each lane, of the next word in the high half. */
+	const float both = 65537;
+	const vi first = _mm512_cvtps_epi32(vf_fma(
+		whole[2], vf_set(16 * both),
+		vf_fma(whole[1], vf_set(4 * both), vf_fma(whole[0], vf_set(both), vf_set(65536)))));
+	static const int offset[4] = { 0, 4 * 65537, 16 * 65537, 20 * 65537 };
+	for (int i = 0; i < 4; i++)
+		pairs[i] = _mm512_permutex2var_epi16(
+			block->words[0], vi_add(first, vi_set(offset[i])), block->words[1]);
+}
+
+SIMD void block_pairs_wide(const struct block_voxels *block, const vf whole[3], vi pairs[4])
+{
+	const float both = 65537;
+	const vi first = _mm512_cvtps_epi32(vf_fma(
+		whole[2], vf_set(32 * both),
+		vf_fma(whole[1], vf_set(8 * both), vf_fma(whole[0], vf_set(both), vf_set(65536)))));
+	for (int i = 0; i < 4; i++) {
+		const vi index = vi_add(first, vi_set(((i & 1) * 8 + (i >> 1) * 32) * 65537));
+		const vi low = _mm512_permutex2var_epi16(block->words[0], index, block->words[1]);
+		const vi high = _mm512_permutex2var_epi16(block->words[2], index, block->words[3]);
+		pairs[i] = vi_select(_mm512_test_epi32_mask(index, vi_set(64)), high, low);
+	}
+}
+
+SIMD void block_pairs(const struct block_voxels *block, enum gz_voxel_type type, int wide,
+		      const vf whole[3], vi pairs[4])
+{
+	(void)type;
+	if (wide)
+		block_pairs_wide(block, whole, pairs);
+	else
+		block_pairs_edge(block, whole, pairs);
+}
+
+SIMD vf block_voxel_f32(const struct block_voxels *block, vi index)
+{
+	const vf low = _mm512_permutex2var_ps(block->slices[0], index, block->slices[1]);
+	const vf high = _mm512_permutex2var_ps(block->slices[2], index, block->slices[3]);
+	return vf_select(_mm512_test_epi32_mask(index, vi_set(BLOCK_VOXELS / 2)), high, low);
+}
+
+SIMD vf block_mix_floats(const struct block_voxels *block, const vf whole[3], const vf share[3])
+{
+	const vi first = _mm512_cvtps_epi32(
+		vf_fma(whole[2], vf_set(16), vf_fma(whole[1], vf_set(4), whole[0])));
+	vf rows[4];
+	for (int i = 0; i < 4; i++) {
+		const vi index = vi_add(first, vi_set((i & 1) * 4 + (i >> 1) * 16));
+		rows[i] = mix(block_voxel_f32(block, index),
+			      block_voxel_f32(block, vi_add(index, vi_set(1))), share[0]);
+	}
+	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
+}
+
+/* 16 bits for each lane, from base + index bytes. Single loads take half the time of a gather. */
+SIMD __m256i load_halves(const uint8_t *base, const int32_t index[SIMD_LANES])
+{
+	__m128i half[2];
+	for (int i = 0; i < 2; i++, index += SIMD_LANES / 2) {
+		uint16_t pair[SIMD_LANES / 2];
+		for (int lane = 0; lane < SIMD_LANES / 2; lane++)
+			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
+		half[i] = _mm_setr_epi16((int16_t)pair[0], (int16_t)pair[1], (int16_t)pair[2],
+					 (int16_t)pair[3], (int16_t)pair[4], (int16_t)pair[5],
+					 (int16_t)pair[6], (int16_t)pair[7]);
+	}
+	return _mm256_set_m128i(half[1], half[0]);
+}
+
+/* 32 bits for each lane, from base + 2 * index bytes. */
+SIMD vi load_words(const uint16_t *base, const int32_t index[SIMD_LANES])
+{
+	__m128i quarter[4];
+	for (int i = 0; i < 4; i++, index += SIMD_LANES / 4) {
+		int32_t pair[SIMD_LANES / 4];
+		for (int lane = 0; lane < SIMD_LANES / 4; lane++)
+			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
+		quarter[i] = _mm_setr_epi32(pair[0], pair[1], pair[2], pair[3]);
+	}
+	return _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(quarter[1], quarter[0])),
+				  _mm256_set_m128i(quarter[3], quarter[2]), 1);
+}
+
+/* Two neighbours along x for each lane, as words. */
+SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t from,
+			const int32_t index[SIMD_LANES])
+{
+	if (type == GZ_VOXEL_U8)
+		return _mm512_cvtepu8_epi16(load_halves((const uint8_t *)voxels + from, index));
+	return _mm512_xor_si512(load_words((const uint16_t *)voxels + from, index),
+				vi_set((int32_t)0x80008000));
+}
+
+#endif
