@@ -110,25 +110,55 @@ SIMD uint32_t march_fine(const struct march *m, const struct look_up *look_up, v
 	return samples + settle_waiting(m, &before, &alive, light);
 }
 
-/* All whole segments. */
-SIMD uint32_t march_whole(const struct march *m, struct light *light)
+/* All whole segments of one register. */
+SIMD uint32_t march_whole(const struct march *m, const struct look_up *look_up, struct light *light)
 {
-	const struct look_up look_up = look_up_of(m->cast, m->reading);
-	const vm alive =
-		vm_and(m->rays->hit, vf_less(vf_set(m->cast->end_transmittance), light->through));
+	const vm alive = rays_alive(m, m->rays, light);
 	if (!vm_any(alive))
 		return 0;
 #ifdef SIMD_GATHERS
-	if (m->cast->fine[0].flags) {
+	if (m->cast->fine[0].flags)
+		return march_fine(m, look_up, alive, light);
+#endif
+	return march_apart(m, look_up, alive, light);
+}
+
 #ifdef SIMD_BLOCKS
-		const struct beam beam = beam_of(m->rays);
+/* All whole segments of a tile: its rays side by side if one block serves them, otherwise those of
+ * each register. */
+SIMD uint32_t march_beams(const struct march *m, const struct look_up *look_up,
+			  struct light light[TILE_PARTS])
+{
+	uint32_t samples = 0;
+	const struct beam tile = beam_of(m->rays, TILE_PARTS);
+	const int whole = TILE_PARTS == 1 || company_of(m->cast, m->reading, &tile) == SIDE_BY_SIDE;
+	for (int part = 0; part < TILE_PARTS; part += whole ? TILE_PARTS : 1) {
+		const struct march some = march_of_part(m, part);
+		const struct beam beam = whole ? tile : beam_of(some.rays, 1);
+		const vm alive = rays_alive(&some, some.rays, &light[part]);
 		if (beam.grid < GZ_FINE_GRIDS)
-			return march_beam(m, &look_up, &beam, alive, light);
-#endif
-		return march_fine(m, &look_up, alive, light);
+			samples += march_beam(&some, look_up, &beam, &light[part]);
+		else
+			samples += march_fine(&some, look_up, alive, &light[part]);
 	}
+	return samples;
+}
 #endif
-	return march_apart(m, &look_up, alive, light);
+
+/* All whole segments of a tile. */
+SIMD uint32_t march_tile(const struct march *m, struct light light[TILE_PARTS])
+{
+	const struct look_up look_up = look_up_of(m->cast, m->reading);
+	uint32_t samples = 0;
+#ifdef SIMD_BLOCKS
+	if (m->cast->fine[0].flags)
+		return march_beams(m, &look_up, light);
+#endif
+	for (int part = 0; part < TILE_PARTS; part++) {
+		const struct march one = march_of_part(m, part);
+		samples += march_whole(&one, &look_up, &light[part]);
+	}
+	return samples;
 }
 
 /* A partial segment at an end of a ray: `steps` long, with its middle at k. */
@@ -157,13 +187,34 @@ SIMD uint32_t march_part(const struct march *m, vf k, vf steps, struct light *li
 	return vm_count(mask);
 }
 
-SIMD uint32_t cast_by_samples(const struct march *m, struct light *light)
+/* The rays of a tile by samples. */
+SIMD uint32_t cast_by_samples(const struct march *m, struct light light[TILE_PARTS])
 {
-	const struct rays *rays = m->rays;
-	uint32_t samples = march_part(m, rays->head_at, rays->head, light);
-	samples += march_whole(m, light);
-	return samples +
-	       march_part(m, vf_fma(rays->rest, vf_set(0.5F), rays->end), rays->rest, light);
+	uint32_t samples = 0;
+	for (int part = 0; part < TILE_PARTS; part++) {
+		const struct march one = march_of_part(m, part);
+		samples += march_part(&one, one.rays->head_at, one.rays->head, &light[part]);
+	}
+	samples += march_tile(m, light);
+	for (int part = 0; part < TILE_PARTS; part++) {
+		const struct march one = march_of_part(m, part);
+		const struct rays *rays = one.rays;
+		const vf middle = vf_fma(rays->rest, vf_set(0.5F), rays->end);
+		samples += march_part(&one, middle, rays->rest, &light[part]);
+	}
+	return samples;
+}
+
+/* The rays of a tile by segments. */
+SIMD uint32_t cast_tile_by_segments(const struct march *m, struct light light[TILE_PARTS])
+{
+	uint32_t samples = 0;
+	for (int part = 0; part < TILE_PARTS; part++) {
+		const struct march one = march_of_part(m, part);
+		if (vm_any(one.rays->hit))
+			samples += cast_by_segments(&one, &light[part]);
+	}
+	return samples;
 }
 
 SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile,
@@ -172,27 +223,29 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 {
 	const int rich = variant != GZ_CAST_PLAIN, coloured = variant == GZ_CAST_COLOURED;
 	uint32_t samples = 0;
-	for (int first = 0; first < GZ_TILE_RAYS; first += SIMD_LANES) {
-		struct rays rays;
-		struct view view;
-		struct light light = { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
-		set_up_rays(cast, tile, first, &rays);
-		if (!vm_any(rays.hit)) {
-			if (__builtin_expect(tile->hit_depth != NULL, 0))
-				composite_hits(tile, first, &light);
-			vi_store(out_pixels + first, to_pixel(cast, tile, first, &light));
-			continue;
+	struct rays rays[TILE_PARTS];
+	struct view view[TILE_PARTS];
+	struct light light[TILE_PARTS];
+	const struct march march = { cast, reading, tile->step, rays, coloured };
+	int hit = 0;
+	for (int part = 0; part < TILE_PARTS; part++) {
+		set_up_rays(cast, tile, part * SIMD_LANES, &rays[part]);
+		light[part] = (struct light) { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
+		hit |= vm_any(rays[part].hit);
+		if (rich && cast->light.on && vm_any(rays[part].hit)) {
+			set_up_view(cast, tile->step, &rays[part], &view[part]);
+			rays[part].view = &view[part];
 		}
-		if (rich && cast->light.on) {
-			set_up_view(cast, tile->step, &rays, &view);
-			rays.view = &view;
-		}
-		const struct march march = { cast, reading, tile->step, &rays, coloured };
-		samples += rich && cast->preintegrated_extinction ? cast_by_segments(&march, &light)
-								  : cast_by_samples(&march, &light);
+	}
+	if (hit)
+		samples = rich && cast->preintegrated_extinction
+				  ? cast_tile_by_segments(&march, light)
+				  : cast_by_samples(&march, light);
+	for (int part = 0; part < TILE_PARTS; part++) {
+		const int first = part * SIMD_LANES;
 		if (__builtin_expect(tile->hit_depth != NULL, 0))
-			composite_hits(tile, first, &light);
-		vi_store(out_pixels + first, to_pixel(cast, tile, first, &light));
+			composite_hits(tile, first, &light[part]);
+		vi_store(out_pixels + first, to_pixel(cast, tile, first, &light[part]));
 	}
 	return samples;
 }

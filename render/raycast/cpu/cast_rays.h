@@ -33,16 +33,26 @@ struct reading {
 	int nearest;
 };
 
-/* What every function along the rays of one register needs. All of them are inlined, so that the
- * fields stay in registers and the constants stay constants. Do not pass it to a function that is
- * not inlined. */
+/* Registers that the rays of a tile take. */
+enum { TILE_PARTS = GZ_TILE_RAYS / SIMD_LANES };
+
+/* What every function along rays needs. All of them are inlined, so that the fields stay in
+ * registers and the constants stay constants. Do not pass it to a function that is not inlined. */
 struct march {
 	const struct gz_cast *cast;
 	struct reading reading;
-	int step; /* of the plan */
-	const struct rays *rays;
-	int coloured; /* voxels have colours; a constant of each kernel, too */
+	int step;                /* of the plan */
+	const struct rays *rays; /* of one register, or the first of several */
+	int coloured;            /* voxels have colours; a constant of each kernel, too */
 };
+
+/* The march of the rays of one register of several. */
+SIMD struct march march_of_part(const struct march *m, int part)
+{
+	struct march one = *m;
+	one.rays += part;
+	return one;
+}
 
 /* Steps from the origin to where the rays enter the whole box, and to where they enter and leave
  * the shown part of it. */

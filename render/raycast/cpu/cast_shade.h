@@ -466,6 +466,12 @@ SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm ma
 	composite_colour(colour, opacity, mask, light);
 }
 
+/* Which rays have whole segments to come. */
+SIMD vm rays_alive(const struct march *m, const struct rays *rays, const struct light *light)
+{
+	return vm_and(rays->hit, vf_less(vf_set(m->cast->end_transmittance), light->through));
+}
+
 /* A sample whose colour has not been added yet: it is looked up while the next one is fetched, so
  * that neither waits for the other. */
 struct waiting {

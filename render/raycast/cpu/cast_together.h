@@ -39,27 +39,47 @@ struct beam {
 	float spread_x, spread_yz;  /* longest edges along x, and across */
 	int grid;                   /* of the fine cells that are at least as long */
 	float levels_per_voxel;     /* of the corner and axis that move fastest */
-	vf first;                   /* k at level 0 */
+	int parts;                  /* registers of rays */
+	vf first[TILE_PARTS];       /* k at level 0 */
 	float count;                /* levels */
 };
 
-/* k at level 0: the first sample of the ray that comes first, and the samples of the others that
- * are level with it, which may lie before they enter the box. */
-SIMD vf level_start(const struct rays *rays)
+/* Registers of rays in a beam: a constant where a tile has but one. */
+SIMD int beam_parts(const struct beam *beam)
 {
-	const float nearest = vf_least_of(rays->zero + rays->first, rays->hit);
-	return vf_set(0.5F) + vf_nearest(vf_set(nearest) - rays->zero);
+	return TILE_PARTS == 1 ? 1 : beam->parts;
 }
 
-/* The box around the places at k. */
-SIMD void beam_corners(const struct rays *rays, vf k, __m128 *low, __m128 *high)
+/* k at level 0: the first sample of the ray that comes first, and the samples of the others that
+ * are level with it, which may lie before they enter the box. Finds the levels, too. */
+SIMD void beam_levels(const struct rays *rays, struct beam *beam)
 {
-	float least[3], most[3];
-	for (int axis = 0; axis < 3; axis++) {
-		const vf at = vf_fma(k, rays->delta[axis], rays->datum[axis]);
-		least[axis] = vf_least_of(at, rays->hit);
-		most[axis] = vf_greatest_of(at, rays->hit);
+	float nearest = INFINITY;
+	for (int part = 0; part < beam_parts(beam); part++)
+		nearest = fminf(nearest,
+				vf_least_of(rays[part].zero + rays[part].first, rays[part].hit));
+	beam->count = 0;
+	for (int part = 0; part < beam_parts(beam); part++) {
+		beam->first[part] = vf_set(0.5F) + vf_nearest(vf_set(nearest) - rays[part].zero);
+		const vf levels = rays[part].end - beam->first[part];
+		beam->count = fmaxf(beam->count, ceilf(vf_greatest_of(levels, rays[part].hit)));
 	}
+}
+
+/* The box around the places at a level. */
+SIMD void beam_corners(const struct rays *rays, const struct beam *beam, float level, __m128 *low,
+		       __m128 *high)
+{
+	float least[3] = { INFINITY, INFINITY, INFINITY };
+	float most[3] = { -INFINITY, -INFINITY, -INFINITY };
+	for (int part = 0; part < beam_parts(beam); part++)
+		for (int axis = 0; axis < 3; axis++) {
+			const struct rays *of = &rays[part];
+			const vf at = vf_fma(beam->first[part] + vf_set(level), of->delta[axis],
+					     of->datum[axis]);
+			least[axis] = fminf(least[axis], vf_least_of(at, of->hit));
+			most[axis] = fmaxf(most[axis], vf_greatest_of(at, of->hit));
+		}
 	const __m128 slack = _mm_set1_ps(TOGETHER_SLACK);
 	*low = _mm_sub_ps(_mm_setr_ps(least[0], least[1], least[2], 0), slack);
 	*high = _mm_add_ps(_mm_setr_ps(most[0], most[1], most[2], 0), slack);
@@ -78,13 +98,13 @@ SIMD __m128 absolute_of_four(__m128 x)
 
 /* Each ray moves straight and evenly, so the least coordinate of all rays is a concave function of
  * the level and never below the line between its ends; likewise for the greatest. */
-SIMD struct beam beam_of(const struct rays *rays)
+SIMD struct beam beam_of(const struct rays *rays, int parts)
 {
-	struct beam beam = { .first = level_start(rays) };
-	beam.count = ceilf(vf_greatest_of(rays->end - beam.first, rays->hit));
+	struct beam beam = { .parts = parts };
+	beam_levels(rays, &beam);
 	__m128 low, high;
-	beam_corners(rays, beam.first, &beam.low, &beam.high);
-	beam_corners(rays, beam.first + vf_set(beam.count), &low, &high);
+	beam_corners(rays, &beam, 0, &beam.low, &beam.high);
+	beam_corners(rays, &beam, beam.count, &low, &high);
 	const __m128 share = _mm_set1_ps(1 / fmaxf(beam.count, 1));
 	beam.low_step = _mm_mul_ps(_mm_sub_ps(low, beam.low), share);
 	beam.high_step = _mm_mul_ps(_mm_sub_ps(high, beam.high), share);
@@ -182,12 +202,41 @@ SIMD vf fetch_together(const struct march *m, int wide, vf k, vm needed, const s
 	return block_sample(block, m->reading.type, wide, places);
 }
 
-/* A beam on its way. */
+/* A beam on its way: of each register, which rays are alive, and the sample that waits. */
 struct progress {
-	vm alive;
-	struct waiting before;
+	vm alive[TILE_PARTS];
+	struct waiting before[TILE_PARTS];
 	struct light *light;
 };
+
+SIMD int beam_alive(const struct progress *on, int parts)
+{
+	vm alive = on->alive[0];
+	for (int part = 1; part < parts; part++)
+		alive = vm_or(alive, on->alive[part]);
+	return vm_any(alive);
+}
+
+/* Add the waiting sample of a register. */
+SIMD uint32_t settle_part(const struct march *m, int part, struct progress *on)
+{
+	const struct march one = march_of_part(m, part);
+	return settle_waiting(&one, &on->before[part], &on->alive[part], &on->light[part]);
+}
+
+/* Take the samples of one register at a level. */
+SIMD uint32_t take_level(const struct march *m, const struct look_up *look_up, int wide,
+			 const struct beam *beam, float level, const struct block *block, int part,
+			 struct progress *on)
+{
+	const struct march one = march_of_part(m, part);
+	const vf k = beam->first[part] + vf_set(level);
+	const vm within = vm_and(vf_less(one.rays->first, k), vf_less(k, one.rays->end));
+	const vf value = fetch_together(&one, wide, k, vm_and(within, on->alive[part]), block);
+	const uint32_t samples = settle_part(m, part, on);
+	on->before[part] = (struct waiting) { k, entry_of(look_up, value), within };
+	return samples;
+}
 
 /* Take the samples of listed levels by blocks. The block of the next sample is loaded while the
  * present one is interpolated, and its colour is looked up during the next one: a processor that
@@ -196,19 +245,15 @@ SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up
 			    const struct beam *beam, const struct level_list *list,
 			    struct progress *on)
 {
-	const struct rays *rays = m->rays;
 	const float *levels = list->levels;
 	const int count = list->count;
 	uint32_t samples = 0;
 	struct block block, next;
 	beam_block(m, wide, beam, levels[0], &block);
-	for (int i = 0; i < count && vm_any(on->alive); i++) {
+	for (int i = 0; i < count && beam_alive(on, beam_parts(beam)); i++) {
 		beam_block(m, wide, beam, levels[i + 1 < count ? i + 1 : i], &next);
-		const vf k = beam->first + vf_set(levels[i]);
-		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
-		const vf value = fetch_together(m, wide, k, vm_and(within, on->alive), &block);
-		samples += settle_waiting(m, &on->before, &on->alive, on->light);
-		on->before = (struct waiting) { k, entry_of(look_up, value), within };
+		for (int part = 0; part < beam_parts(beam); part++)
+			samples += take_level(m, look_up, wide, beam, levels[i], &block, part, on);
 		block = next;
 	}
 	return samples;
@@ -241,6 +286,7 @@ SIMD void prefetch_voxels(const struct gz_cast *cast, enum gz_voxel_type type, c
 	}
 }
 
+/* Of a beam of one register. */
 SIMD void find_showing(const struct march *m, const struct beam *beam,
 		       const struct level_list *list, struct showing *showing)
 {
@@ -249,7 +295,7 @@ SIMD void find_showing(const struct march *m, const struct beam *beam,
 	const float *levels = list->levels;
 	int kept = 0;
 	for (int i = 0; i < list->count; i++) {
-		const vf k = beam->first + vf_set(levels[i]);
+		const vf k = beam->first[0] + vf_set(levels[i]);
 		const vm within = vm_and(vf_less(rays->first, k), vf_less(k, rays->end));
 		vf at[3];
 		for (int axis = 0; axis < 3; axis++)
@@ -267,7 +313,7 @@ SIMD void find_showing(const struct march *m, const struct beam *beam,
 }
 
 /* Take the samples of listed levels where rays are too far apart for a block: only those that show
- * something. */
+ * something. The beam is of one register. */
 SIMD uint32_t take_scattered(const struct march *m, const struct look_up *look_up,
 			     const struct beam *beam, const struct level_list *list,
 			     struct progress *on)
@@ -275,13 +321,13 @@ SIMD uint32_t take_scattered(const struct march *m, const struct look_up *look_u
 	struct showing showing;
 	uint32_t samples = 0;
 	find_showing(m, beam, list, &showing);
-	for (int i = 0; i < showing.count && vm_any(on->alive); i++) {
-		const vf k = beam->first + vf_set(showing.level[i]);
+	for (int i = 0; i < showing.count && vm_any(on->alive[0]); i++) {
+		const vf k = beam->first[0] + vf_set(showing.level[i]);
 		if (i + LEVELS_AHEAD < showing.count)
 			prefetch_voxels(m->cast, m->reading.type, showing.first[i + LEVELS_AHEAD]);
-		const vf value = fetch_sample(m, k, vm_and(showing.rays[i], on->alive));
-		samples += settle_waiting(m, &on->before, &on->alive, on->light);
-		on->before = (struct waiting) { k, entry_of(look_up, value), showing.rays[i] };
+		const vf value = fetch_sample(m, k, vm_and(showing.rays[i], on->alive[0]));
+		samples += settle_part(m, 0, on);
+		on->before[0] = (struct waiting) { k, entry_of(look_up, value), showing.rays[i] };
 	}
 	return samples;
 }
@@ -306,22 +352,29 @@ SIMD enum company company_of(const struct gz_cast *cast, struct reading reading,
 
 /* All whole segments of a beam. */
 SIMD uint32_t march_beam(const struct march *m, const struct look_up *look_up,
-			 const struct beam *beam, vm alive, struct light *light)
+			 const struct beam *beam, struct light *light)
 {
-	struct level_list list;
-	struct progress on = { alive, none_waiting(), light };
+	const enum gz_voxel_type type = m->reading.type;
 	const enum company company = company_of(m->cast, m->reading, beam);
+	struct level_list list;
+	struct progress on = { .light = light };
 	uint32_t samples = 0;
 	float from = 0;
-	while (vm_any(on.alive) && list_levels(m->cast, beam, &from, &list)) {
-		if (block_exists(m->reading.type, 0) && company == SIDE_BY_SIDE)
+	for (int part = 0; part < beam_parts(beam); part++) {
+		on.alive[part] = rays_alive(m, &m->rays[part], &light[part]);
+		on.before[part] = none_waiting();
+	}
+	while (beam_alive(&on, beam_parts(beam)) && list_levels(m->cast, beam, &from, &list)) {
+		if (block_exists(type, 0) && company == SIDE_BY_SIDE)
 			samples += take_together(m, look_up, 0, beam, &list, &on);
-		else if (block_exists(m->reading.type, 1) && company == IN_A_ROW)
+		else if (block_exists(type, 1) && company == IN_A_ROW)
 			samples += take_together(m, look_up, 1, beam, &list, &on);
 		else
 			samples += take_scattered(m, look_up, beam, &list, &on);
 	}
-	return samples + settle_waiting(m, &on.before, &on.alive, light);
+	for (int part = 0; part < beam_parts(beam); part++)
+		samples += settle_part(m, part, &on);
+	return samples;
 }
 
 #endif
