@@ -12,7 +12,7 @@
 #include "base/command.h"
 #include "base/order.h"
 #include "base/text.h"
-#include "bench/clip/camera_path.h"
+#include "bench/study/camera_path.h"
 #include "bench/study/errors.h"
 #include "bench/study/stage.h"
 

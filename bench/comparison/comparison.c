@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/clip/camera_path.h"
 #include "bench/comparison/comparison_measure.h"
+#include "bench/study/camera_path.h"
 #include "bench/study/stage.h"
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"

@@ -28,7 +28,7 @@ struct gz_comparison_request {
 	int frames;              /**< of each method; 0: as many as the camera path has, or 6 */
 	int warm_up;             /**< frames before those; at least 1 */
 	double turn_deg;         /**< that the camera turns a frame, without a camera path */
-	const char *camera_path; /**< file (bench/clip/camera_path.h); NULL: the camera turns */
+	const char *camera_path; /**< file (bench/study/camera_path.h); NULL: the camera turns */
 	double isovalue;         /**< of surfaces; NaN: gz_comparison_isovalue() */
 	bool errors;             /**< compare with the converged ray cast */
 	const char *cache;       /**< folder of converged pictures; NULL: they are not kept */

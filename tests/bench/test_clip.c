@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "bench/clip/camera_path.h"
+#include "bench/study/camera_path.h"
 #include "called.h"
 #include "render/picture/image.h"
 

@@ -1,4 +1,4 @@
-#include "bench/clip/camera_path.h"
+#include "bench/study/camera_path.h"
 
 #include <stdbool.h>
 #include <stdlib.h>

@@ -7,8 +7,8 @@
  * may be words; empty lines and what follows # are left out. Of the file frames.tsv of a session
  * (docs/sessions.md) each frame is one camera.
  */
-#ifndef GZ_BENCH_CLIP_CAMERA_PATH_H
-#define GZ_BENCH_CLIP_CAMERA_PATH_H
+#ifndef GZ_BENCH_STUDY_CAMERA_PATH_H
+#define GZ_BENCH_STUDY_CAMERA_PATH_H
 
 #include <stddef.h>
 
