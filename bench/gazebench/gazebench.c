@@ -50,6 +50,7 @@ static const struct item items[] = {
 	{ "metric", "flicker", "change while the gaze trembles by a pixel, levels of 255" },
 	{ "metric", "turning_error",
 	  "visible change beyond that of standard while the camera turns, levels of 255" },
+	{ "metric", "camera_path_error", "the same while the camera follows --camera-path" },
 	{ "where", "all", "each pixel counts alike" },
 	{ "where", "foveal", "pixels within 2.5 degrees of the gaze count" },
 	{ "where", "perceived", "pixels count by what the eye sees there" },

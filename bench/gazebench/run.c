@@ -25,6 +25,7 @@ struct settings {
 	char size[LIST_SIZE];
 	char backend[LIST_SIZE];
 	int frames, warm_up, seed, cameras;
+	char camera_path[GZ_PATH_SIZE];
 	char shard[GZ_NAME_SIZE];
 	double min_move_px;
 	bool per_cell;
@@ -124,6 +125,14 @@ static const struct gz_option options[] = {
 	  .choices = gz_study_accuracy_names,
 	  .preset = "all",
 	  .help = "reference for errors: all = standard and the converged picture" },
+	{ .key = "camera-path",
+	  .type = GZ_OPTION_STRING,
+	  .offset = AT(camera_path),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "file with a camera a frame, 60 frames a second: measure what the eye sees "
+		  "come and go along it, too; lines of eye x y z, look_at x y z [up x y z "
+		  "[fov_deg]], or frames.tsv of a session" },
 	{ .key = "cache",
 	  .type = GZ_OPTION_STRING,
 	  .offset = AT(cache),
@@ -266,6 +275,7 @@ static int run_run(int argc, char *const *argv, const struct gz_log *log)
 		.sizes = settings.size,
 		.backends = settings.backend,
 		.path = settings.path,
+		.camera_path = settings.camera_path[0] ? settings.camera_path : NULL,
 		.min_move_px = settings.min_move_px,
 		.per_cell = settings.per_cell,
 		.cameras = (uint32_t)settings.cameras,

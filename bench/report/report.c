@@ -567,6 +567,10 @@ static void add_command(const struct gz_study *study, struct gz_text *out)
 		gz_text_add(out, i > 0 ? "," : "");
 		add_argument(study->backends[i], out);
 	}
+	if (study->camera_path[0]) {
+		gz_text_add(out, " --camera-path ");
+		add_argument(study->camera_path, out);
+	}
 	if (study->camera_count > 0)
 		gz_text_add(out, " --cameras %u", study->camera_count);
 	if (study->min_move_px > 0)

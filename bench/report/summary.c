@@ -43,6 +43,7 @@ static struct gz_series_point point_of(const struct gz_study_row *const *rows, s
 			    [GZ_AGAINST_STANDARD] = first->standard },
 		.flicker = first->flicker,
 		.turning_error = first->turning_error,
+		.camera_path_error = first->camera_path_error,
 	};
 	point.frame_ms = join_column(rows, count, GZ_COLUMN_FRAME, room).median;
 	point.cast_ms = join_column(rows, count, GZ_COLUMN_CAST, room).median;
@@ -117,6 +118,9 @@ static enum gz_result fill_series(struct gz_series *series, const struct gz_stud
 	for (size_t i = 0; i < series->point_count; i++)
 		room[i] = series->points[i].turning_error;
 	series->turning_error = gz_distribution_of(room, series->point_count);
+	for (size_t i = 0; i < series->point_count; i++)
+		room[i] = series->points[i].camera_path_error;
+	series->camera_path_error = gz_distribution_of(room, series->point_count);
 	return GZ_OK;
 }
 

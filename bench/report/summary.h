@@ -35,7 +35,7 @@ struct gz_series_point {
 	double cast_ms;  /**< likewise */
 	double rays, samples;
 	struct gz_study_errors errors[GZ_ERROR_REFERENCES];
-	double flicker, turning_error;
+	double flicker, turning_error, camera_path_error;
 };
 
 /** One variant of one group. */
@@ -61,7 +61,7 @@ struct gz_series {
 	 *  at the cost of standard's rays, over typical_ms. NaN without one of them. */
 	double efficiency;
 	struct gz_error_summary errors[GZ_ERROR_REFERENCES][GZ_ERROR_MEASURES];
-	struct gz_distribution flicker, turning_error; /**< over points */
+	struct gz_distribution flicker, turning_error, camera_path_error; /**< over points */
 	/** On the Pareto front: no other series is better in both time and mean error and none
 	 *  is as good in one and better in the other. */
 	bool front[GZ_ERROR_REFERENCES][GZ_ERROR_MEASURES];

@@ -92,6 +92,7 @@ static json_t *series_to_json(const struct gz_study *study, const struct gz_seri
 	json_object_set_new(object, "overhead_ms", distribution(&series->overhead_ms));
 	json_object_set_new(object, "flicker", distribution(&series->flicker));
 	json_object_set_new(object, "turning_error", distribution(&series->turning_error));
+	json_object_set_new(object, "camera_path_error", distribution(&series->camera_path_error));
 	json_object_set_new(object, "errors", errors(series));
 	return object;
 }
@@ -232,6 +233,7 @@ static json_t *head_to_json(const struct gz_study *study)
 			    json_pack("[i, i]", study->shard + 1, study->shard_count));
 	json_object_set_new(object, "rows", count(study->row_count));
 	json_object_set_new(object, "path", json_string(study->path));
+	json_object_set_new(object, "camera_path", json_string(study->camera_path));
 	json_object_set_new(object, "path_hash", json_string(study->path_hash));
 	json_object_set_new(object, "points", count(study->point_count));
 	json_object_set_new(object, "cameras", json_integer(study->camera_count));

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "base/workers.h"
+#include "bench/metrics/temporal.h"
 #include "bench/study/hash.h"
 #include "bench/study/study.h"
 #include "render/plan/method.h"
@@ -399,6 +400,40 @@ static enum gz_result ask_scene(struct asking *asking, const char *path, size_t 
 	return result;
 }
 
+/* The camera path as each scene sees it: what its lines do not name is the scene's. */
+static enum gz_result read_camera_paths(struct asking *asking)
+{
+	struct gz_study *study = asking->study;
+	const char *file = asking->request->camera_path;
+	struct gz_hash *hash = NULL;
+	if (!file)
+		return GZ_OK;
+	if (strlen(file) >= sizeof study->camera_path) {
+		gz_err(asking->log, "%.40s…: a name this long cannot be opened", file);
+		return GZ_ERR_INVAL;
+	}
+	study->camera_paths = calloc(study->scene_count, sizeof *study->camera_paths);
+	if (!study->camera_paths)
+		return out_of_memory(asking);
+	enum gz_result result = gz_hash_begin(&hash);
+	if (result != GZ_OK)
+		return result;
+	for (size_t i = 0; i < study->scene_count && result == GZ_OK; i++) {
+		result = gz_camera_path_read(file, &study->scenes[i].camera, asking->log,
+					     &study->camera_paths[i]);
+		gz_camera_path_hash(&study->camera_paths[i], hash);
+	}
+	if (result == GZ_OK && study->camera_paths[0].count < GZ_TEMPORAL_FRAMES) {
+		gz_err(asking->log, "%s: has %zu cameras; what the eye sees of changes takes %d",
+		       file, study->camera_paths[0].count, GZ_TEMPORAL_FRAMES);
+		result = GZ_ERR_INVAL;
+	}
+	snprintf(study->camera_path, sizeof study->camera_path, "%s", file);
+	const enum gz_result ended =
+		gz_hash_end(&hash, result == GZ_OK ? study->camera_path_hash : NULL);
+	return result == GZ_OK ? ended : result;
+}
+
 static enum gz_result list_scenes(struct asking *asking)
 {
 	const struct gz_study_request *request = asking->request;
@@ -474,9 +509,22 @@ static void take_size_list(const struct gz_study_request *request, struct gz_stu
 	snprintf(study->machine.commit, GZ_STUDY_TEXT_SIZE, "%s", request->commit);
 }
 
+/* Only errors are measured along a camera path. */
+static enum gz_result check_camera_path(const struct asking *asking)
+{
+	const struct gz_study_request *request = asking->request;
+	if (!request->camera_path || request->accuracy != GZ_STUDY_ACCURACY_NONE)
+		return GZ_OK;
+	gz_err(asking->log, "%s: a camera path is for errors, which --errors none leaves out",
+	       request->camera_path);
+	return GZ_ERR_INVAL;
+}
+
 static enum gz_result list_all(struct asking *asking)
 {
-	enum gz_result result = list_variants(asking);
+	enum gz_result result = check_camera_path(asking);
+	if (result == GZ_OK)
+		result = list_variants(asking);
 	if (result == GZ_OK)
 		result = list_sizes(asking);
 	return result == GZ_OK ? list_backends(asking) : result;
@@ -506,6 +554,8 @@ enum gz_result gz_study_ask(const struct gz_study_request *request, struct gz_st
 		result = make_path(&asking);
 	if (result == GZ_OK)
 		result = list_scenes(&asking);
+	if (result == GZ_OK)
+		result = read_camera_paths(&asking);
 	if (result == GZ_OK)
 		result = make_bound_rays(study, log);
 	for (size_t i = 0; i < study->size_count && result == GZ_OK; i++)

@@ -16,10 +16,11 @@
 struct gz_study_request {
 	const char *const *scenes; /**< paths */
 	size_t scene_count;
-	const char *methods;  /**< "acuity,mdc:mdc_spacing=3": see bench/study/variant.h */
-	const char *sizes;    /**< "1024x1024,640x480" */
-	const char *backends; /**< "cpu,gl": see gz_study_backend_parse() */
-	const char *path;     /**< see bench/study/gaze_path.h */
+	const char *methods;     /**< "acuity,mdc:mdc_spacing=3": see bench/study/variant.h */
+	const char *sizes;       /**< "1024x1024,640x480" */
+	const char *backends;    /**< "cpu,gl": see gz_study_backend_parse() */
+	const char *path;        /**< see bench/study/gaze_path.h */
+	const char *camera_path; /**< file (bench/study/camera_path.h); NULL: none */
 	double min_move_px;
 	bool per_cell;
 	uint32_t cameras;

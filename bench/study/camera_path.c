@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "bench/study/hash.h"
 #include "render/scene/scene_settings.h"
 
 #define GZ_LOG_MODULE "camera path"
@@ -164,6 +165,22 @@ enum gz_result gz_camera_path_read(const char *path, const struct gz_camera *fir
 	else
 		gz_camera_path_free(&made);
 	return result;
+}
+
+void gz_camera_path_hash(const struct gz_camera_path *path, struct gz_hash *hash)
+{
+	gz_hash_add_number(hash, (double)path->count);
+	for (size_t i = 0; i < path->count; i++) {
+		const struct gz_camera *camera = &path->cameras[i];
+		for (int axis = 0; axis < 3; axis++) {
+			gz_hash_add_number(hash, camera->eye[axis]);
+			gz_hash_add_number(hash, camera->look_at[axis]);
+			gz_hash_add_number(hash, camera->up[axis]);
+		}
+		gz_hash_add_number(hash, camera->projection);
+		gz_hash_add_number(hash, camera->fov_deg);
+		gz_hash_add_number(hash, camera->height);
+	}
 }
 
 void gz_camera_path_free(struct gz_camera_path *path)

@@ -37,6 +37,11 @@ struct gz_camera_path {
 enum gz_result gz_camera_path_read(const char *path, const struct gz_camera *first,
 				   const struct gz_log *log, struct gz_camera_path *out_path);
 
+struct gz_hash;
+
+/** Add all its cameras to a hash (hash.h). */
+void gz_camera_path_hash(const struct gz_camera_path *path, struct gz_hash *hash);
+
 /** Free what it holds and zero it. */
 void gz_camera_path_free(struct gz_camera_path *path);
 

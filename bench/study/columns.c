@@ -61,6 +61,8 @@ const struct gz_study_column gz_study_columns[GZ_STUDY_COLUMNS] = {
 	[GZ_COLUMN_TURNING] = { ERROR(turning_error), .unit = "of 255", .later = true,
 		.meaning = "what the eye sees come and go that does not in `standard`, while the camera "
 			   "turns" },
+	[GZ_COLUMN_CAMERA_PATH] = { ERROR(camera_path_error), .unit = "of 255", .later = true,
+		.meaning = "the same while the camera follows `--camera-path`; `nan` without" },
 };
 /* clang-format on */
 

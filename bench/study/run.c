@@ -49,9 +49,10 @@ struct measurer {
 	bool has_whole;             /* whole is of something */
 	struct gz_error_weights weights;
 	struct gz_map scratch;
-	struct gz_map response, standard_response; /* to pictures while the camera turns */
-	struct shown response_of;                  /* what standard_response is of */
-	bool has_response;                         /* standard_response is of something */
+	struct gz_map response, standard_response;       /* to pictures while the camera turns */
+	struct shown response_of;                        /* what standard_response is of */
+	bool has_response;                               /* standard_response is of something */
+	struct gz_map path_responses[GZ_STUDY_LIST_MAX]; /* by variant, while a path is followed */
 };
 
 /* A unit in the making. */
@@ -102,6 +103,8 @@ static void measurer_destroy(struct measurer **measurer)
 	gz_map_free(&self->scratch);
 	gz_map_free(&self->response);
 	gz_map_free(&self->standard_response);
+	for (size_t i = 0; i < GZ_STUDY_LIST_MAX; i++)
+		gz_map_free(&self->path_responses[i]);
 	free(self);
 	*measurer = NULL;
 }
@@ -271,6 +274,31 @@ static enum gz_result find_flicker(struct measurer *measurer, const struct unit 
 	return GZ_OK;
 }
 
+/* A response to no picture yet. */
+static enum gz_result begin_response(const struct unit *unit, struct gz_map *response)
+{
+	const enum gz_result result = gz_map_resize(response, unit->width, unit->height);
+	if (result == GZ_OK)
+		memset(response->values, 0,
+		       (size_t)unit->width * (size_t)unit->height * sizeof *response->values);
+	return result;
+}
+
+/* Add a variant's picture to a response. */
+static enum gz_result add_seen(struct measurer *measurer, const struct unit *unit, size_t variant,
+			       const struct gz_camera *camera, double weight,
+			       struct gz_map *response)
+{
+	const struct asked_picture asked = { variant, camera, unit->gaze, false,
+					     &measurer->trembled };
+	if (gz_command_interrupted())
+		return GZ_ERR_CANCELLED;
+	const enum gz_result result = make_variant_picture(measurer, unit, &asked, NULL);
+	if (result == GZ_OK)
+		gz_map_add_luma(response, &measurer->trembled, weight);
+	return result;
+}
+
 /* The response of the eye's transient channel to a variant's pictures while the camera turns. */
 static enum gz_result find_response(struct measurer *measurer, const struct unit *unit,
 				    size_t variant, struct gz_map *response)
@@ -278,18 +306,9 @@ static enum gz_result find_response(struct measurer *measurer, const struct unit
 	double weights[GZ_TEMPORAL_FRAMES];
 	struct gz_camera camera = unit->camera;
 	gz_temporal_weights(SEEN_FPS, weights);
-	enum gz_result result = gz_map_resize(response, unit->width, unit->height);
-	if (result == GZ_OK)
-		memset(response->values, 0,
-		       (size_t)unit->width * (size_t)unit->height * sizeof *response->values);
+	enum gz_result result = begin_response(unit, response);
 	for (int i = 0; i < GZ_TEMPORAL_FRAMES && result == GZ_OK; i++) {
-		const struct asked_picture asked = { variant, &camera, unit->gaze, false,
-						     &measurer->trembled };
-		result = gz_command_interrupted()
-				 ? GZ_ERR_CANCELLED
-				 : make_variant_picture(measurer, unit, &asked, NULL);
-		if (result == GZ_OK)
-			gz_map_add_luma(response, &measurer->trembled, weights[i]);
+		result = add_seen(measurer, unit, variant, &camera, weights[i], response);
 		gz_camera_turn(&camera, SEEN_TURN_DEG);
 	}
 	return result;
@@ -319,6 +338,45 @@ static enum gz_result find_turning_error(struct measurer *measurer, const struct
 		*out_error = gz_map_weighted_difference(&measurer->response,
 							&measurer->standard_response,
 							&measurer->weights.perceived);
+	return result;
+}
+
+/* Responses of all variants to pictures by some cameras in a row. */
+static enum gz_result find_path_responses(struct measurer *measurer, const struct unit *unit,
+					  const struct gz_camera cameras[GZ_TEMPORAL_FRAMES])
+{
+	double weights[GZ_TEMPORAL_FRAMES];
+	const size_t variants = measurer->study->variant_count;
+	enum gz_result result = GZ_OK;
+	gz_temporal_weights(SEEN_FPS, weights);
+	for (size_t v = 0; v < variants && result == GZ_OK; v++)
+		result = begin_response(unit, &measurer->path_responses[v]);
+	for (int i = 0; i < GZ_TEMPORAL_FRAMES; i++)
+		for (size_t v = 0; v < variants && result == GZ_OK; v++)
+			result = add_seen(measurer, unit, v, &cameras[i], weights[i],
+					  &measurer->path_responses[v]);
+	return result;
+}
+
+/* The mean over the study's camera path, cut into as many pictures as a response is made of. */
+static enum gz_result measure_camera_path(struct measurer *measurer, const struct unit *unit,
+					  double out_errors[GZ_STUDY_LIST_MAX])
+{
+	const struct gz_study *study = measurer->study;
+	const struct gz_camera_path *path = &study->camera_paths[unit->shown.scene];
+	const size_t parts = path->count / GZ_TEMPORAL_FRAMES;
+	struct gz_map *responses = measurer->path_responses;
+	enum gz_result result = GZ_OK;
+	for (size_t v = 0; v < study->variant_count; v++)
+		out_errors[v] = 0;
+	for (size_t part = 0; part < parts && result == GZ_OK; part++) {
+		result = find_path_responses(measurer, unit,
+					     path->cameras + part * GZ_TEMPORAL_FRAMES);
+		for (size_t v = 1; v < study->variant_count && result == GZ_OK; v++)
+			out_errors[v] += gz_map_weighted_difference(&responses[v], &responses[0],
+								    &measurer->weights.perceived) /
+					 (double)parts;
+	}
 	return result;
 }
 
@@ -383,6 +441,7 @@ static enum gz_result measure_errors(struct measurer *measurer, const struct uni
 				     struct gz_study_row *rows)
 {
 	const struct gz_study *study = measurer->study;
+	double path_errors[GZ_STUDY_LIST_MAX];
 	enum gz_result result = GZ_OK;
 	if (study->accuracy == GZ_STUDY_ACCURACY_NONE)
 		return GZ_OK;
@@ -391,16 +450,21 @@ static enum gz_result measure_errors(struct measurer *measurer, const struct uni
 	if (result == GZ_OK)
 		result = gz_error_weights_make(&measurer->weights, &unit->display, unit->gaze,
 					       unit->width, unit->height, measurer->workers);
+	if (result == GZ_OK && study->camera_paths)
+		result = measure_camera_path(measurer, unit, path_errors);
 	for (size_t variant = 0; variant < study->variant_count && result == GZ_OK; variant++) {
 		struct gz_study_row *first = &rows[variant * (size_t)study->frames_per_point];
 		if (study->accuracy == GZ_STUDY_ACCURACY_ALL)
 			first->reference_db = measurer->reference_db;
 		result = measure_variant(measurer, unit, variant, first);
+		if (study->camera_paths)
+			first->camera_path_error = path_errors[variant];
 		for (int k = 1; k < study->frames_per_point; k++) {
 			first[k].converged = first->converged;
 			first[k].standard = first->standard;
 			first[k].flicker = first->flicker;
 			first[k].turning_error = first->turning_error;
+			first[k].camera_path_error = first->camera_path_error;
 			first[k].reference_db = first->reference_db;
 		}
 	}

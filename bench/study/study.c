@@ -21,6 +21,9 @@ const char *const gz_study_accuracy_names[] = { "none", "standard", "all", NULL 
 
 void gz_study_free(struct gz_study *study)
 {
+	for (size_t i = 0; study->camera_paths && i < study->scene_count; i++)
+		gz_camera_path_free(&study->camera_paths[i]);
+	free(study->camera_paths);
 	free(study->scenes);
 	free(study->variants);
 	free(study->sizes);
@@ -64,6 +67,7 @@ struct gz_study_row gz_study_unit_row(const struct gz_study *study, size_t unit,
 		.standard = gz_study_errors_unmeasured(),
 		.flicker = NAN,
 		.turning_error = NAN,
+		.camera_path_error = NAN,
 		.reference_db = NAN,
 	};
 	row.point = (uint32_t)(unit % study->point_count);
@@ -156,6 +160,12 @@ static bool scene_differs(struct comparison *comparison, const struct gz_study_s
 	return true;
 }
 
+/* What a message calls a file that may not be there. */
+static const char *named(const char *file)
+{
+	return file[0] ? file : "none";
+}
+
 static bool lists_differ(struct comparison *comparison, const struct gz_study *asked,
 			 const struct gz_study *was)
 {
@@ -214,6 +224,10 @@ bool gz_study_differs(const struct gz_study *study, const struct gz_study *was, 
 		if (number_differs(&comparison, numbers[i].name, numbers[i].asked, numbers[i].was))
 			return true;
 	return text_differs(&comparison, "the path's hash", study->path_hash, was->path_hash) ||
+	       text_differs(&comparison, "--camera-path", named(study->camera_path),
+			    named(was->camera_path)) ||
+	       text_differs(&comparison, "the camera path's hash", study->camera_path_hash,
+			    was->camera_path_hash) ||
 	       lists_differ(&comparison, study, was);
 }
 

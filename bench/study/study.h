@@ -14,6 +14,7 @@
 
 #include "base/option.h"
 #include "base/result.h"
+#include "bench/study/camera_path.h"
 #include "protocol/display.h"
 #include "protocol/gaze.h"
 #include "render/picture/camera.h"
@@ -117,6 +118,8 @@ struct gz_study_row {
 	 * in levels of 255. NaN where it was not measured, and in studies of versions that did not.
 	 */
 	double turning_error;
+	/** The same while the camera follows the study's camera path; NaN without one. */
+	double camera_path_error;
 	/** How far the converged picture is from one of half its step, PSNR: what its own error may
 	 *  be; NaN where there is no converged picture. */
 	double reference_db;
@@ -145,6 +148,12 @@ struct gz_study {
 	int frames_per_point;
 	int warm_up_frames; /**< of each variant at each point, not counted */
 	enum gz_study_accuracy accuracy;
+	/** File with a camera for each frame while the camera_path_error is measured, as given;
+	 *  empty: none. */
+	char camera_path[GZ_PATH_SIZE];
+	char camera_path_hash[GZ_STUDY_HASH_SIZE]; /**< of its cameras in all scenes; or empty */
+	/** Its cameras, by scene; NULL: there is no path, or the study was read from a folder. */
+	struct gz_camera_path *camera_paths;
 	/** Acuity bound: the share of pixels' rays that the eye needs at all, of each scene, size
 	 *  and point; scene_count * size_count * point_count values, points fastest. */
 	double *bound_rays;

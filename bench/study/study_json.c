@@ -100,12 +100,13 @@ static json_t *machine_to_json(const struct gz_study *study)
 json_t *gz_study_to_json(const struct gz_study *study)
 {
 	json_t *json = json_pack(
-		"{ss si sb si si sI si si si ss sf sb ss ss}", "format", GZ_STUDY_FORMAT, "version",
-		GZ_STUDY_VERSION, "complete", study->complete, "shard", study->shard + 1, "shards",
-		study->shard_count, "seed", (json_int_t)study->seed, "cameras",
+		"{ss si sb si si sI si si si ss sf sb ss ss ss ss}", "format", GZ_STUDY_FORMAT,
+		"version", GZ_STUDY_VERSION, "complete", study->complete, "shard", study->shard + 1,
+		"shards", study->shard_count, "seed", (json_int_t)study->seed, "cameras",
 		(int)study->camera_count, "frames", study->frames_per_point, "warm_up",
 		study->warm_up_frames, "path", study->path, "min_move_px", study->min_move_px,
-		"per_cell", study->per_cell, "path_hash", study->path_hash, "errors",
+		"per_cell", study->per_cell, "path_hash", study->path_hash, "camera_path",
+		study->camera_path, "camera_path_hash", study->camera_path_hash, "errors",
 		gz_study_accuracy_names[study->accuracy]);
 	json_t *machine = machine_to_json(study), *lists = lists_to_json(study);
 	if (!json || !machine || !lists || json_object_set(json, "machine", machine) != 0 ||
@@ -476,6 +477,12 @@ static void read_head(struct reader *reader, const json_t *json, struct gz_study
 			real(reader, json_object_get(json, "min_move_px"), "min_move_px");
 	study->per_cell = json_is_true(json_object_get(json, "per_cell"));
 	read_text(reader, json, "path_hash", study->path_hash, sizeof study->path_hash);
+	if (json_object_get(json, "camera_path")) { /* likewise */
+		read_text(reader, json, "camera_path", study->camera_path,
+			  sizeof study->camera_path);
+		read_text(reader, json, "camera_path_hash", study->camera_path_hash,
+			  sizeof study->camera_path_hash);
+	}
 }
 
 static bool is_this_version(const json_t *json, const char *name, const struct gz_log *log)

@@ -113,6 +113,7 @@ void make_rows(struct gz_study *study, made_row *measure)
 		row->gaze = study->points[row->point].gaze;
 		row->gpu_ms = row->prepare_ms = NAN;
 		row->flicker = row->turning_error = row->reference_db = NAN;
+		row->camera_path_error = NAN;
 		row->converged = row->standard = no_errors();
 		measure(study, row);
 	}

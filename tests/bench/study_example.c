@@ -80,6 +80,7 @@ static void fill_rows(struct gz_study *study)
 		row->standard = example_errors(number + 1);
 		row->flicker = number / 8;
 		row->turning_error = number / 32;
+		row->camera_path_error = number / 64;
 		row->reference_db = 70;
 	}
 }
@@ -88,6 +89,7 @@ struct gz_study study_example(int shard, int shard_count)
 {
 	struct gz_study study = {
 		.path = "random:4",
+		.camera_path = "walk.session/frames.tsv",
 		.min_move_px = 0.8,
 		.per_cell = true,
 		.seed = 7,
@@ -106,6 +108,7 @@ struct gz_study study_example(int shard, int shard_count)
 		.complete = true,
 	};
 	memset(study.path_hash, 'b', 64);
+	memset(study.camera_path_hash, 'c', 64);
 	fill_lists(&study);
 	study.bound_rays = calloc(2 * 4, sizeof *study.bound_rays);
 	for (int i = 0; i < 2 * 4; i++)

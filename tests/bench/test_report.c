@@ -257,6 +257,8 @@ static void page_shows_the_command_that_makes_the_study(void **state)
 	gz_page_write(&summary, &none, NULL, &page);
 	assert_non_null(strstr(page.bytes, " --cameras 7 \\\n  --frames 1 "));
 	assert_null(strstr(page.bytes, "--min-move"));
+	assert_null(strstr(page.bytes, "camera path"));
+	assert_null(strstr(page.bytes, "--camera-path"));
 	assert_null(strstr(page.bytes, "--per-cell"));
 	assert_null(strstr(page.bytes, "--distance-mm"));
 	gz_text_free(&page);
@@ -265,8 +267,12 @@ static void page_shows_the_command_that_makes_the_study(void **state)
 	study.scenes[0].display.mm[1] = 318;
 	study.min_move_px = 10.5;
 	study.per_cell = true;
+	strcpy(study.camera_path, "a walk.csv");
 	gz_page_write(&summary, &none, NULL, &page);
-	assert_non_null(strstr(page.bytes, " --cameras 7 --min-move 10.5 --per-cell \\\n"));
+	assert_non_null(strstr(page.bytes, "along the camera path, of 255</th>"));
+	assert_non_null(strstr(
+		page.bytes,
+		" --camera-path &#39;a walk.csv&#39; --cameras 7 --min-move 10.5 --per-cell \\\n"));
 	assert_non_null(strstr(page.bytes, "--display-mm &#39;565.8 318&#39; --distance-mm 600 "));
 	gz_text_free(&page);
 	free_both(&study, &summary);

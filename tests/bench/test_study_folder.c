@@ -177,6 +177,18 @@ static void numbers_are_written_as_short_as_they_can_be(void **state)
 	gz_study_free(&study);
 }
 
+static void study_of_a_version_without_camera_paths_is_read(void **state)
+{
+	(void)state;
+	struct gz_study study = written(0, 1), read;
+	replace("study.json", "\"camera_path\": \"walk.session/frames.tsv\",", "");
+	replace("study.json", "\"camera_path_hash\"", "\"other_hash\"");
+	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
+	assert_true(read.camera_path[0] == '\0' && read.camera_path_hash[0] == '\0');
+	gz_study_free(&read);
+	gz_study_free(&study);
+}
+
 static void study_without_min_move_and_per_cell_is_read(void **state)
 {
 	(void)state;
@@ -271,8 +283,9 @@ static void damaged_rows_are_refused_with_their_line(void **state)
 		{ "mdc,0,0,1,", "mdc,0,0,2,", "frames.csv:5: frame is '2' where '1' follows" },
 		{ ",0.125,", ",-0.125,", "frames.csv:2: plan_ms is '-0.125'" },
 		{ ",0.125,", ",1 2,", "frames.csv:2: plan_ms is '1 2'" },
-		{ ",70,0,0\n", ",70,0\n", "frames.csv:2: turning_error is ''" },
-		{ ",70,0,0\n", ",70,0,0,1\n", "frames.csv:2: there is more than turning_error" },
+		{ ",70,0,0,0\n", ",70,0,0\n", "frames.csv:2: camera_path_error is ''" },
+		{ ",70,0,0,0\n", ",70,0,0,0,1\n",
+		  "frames.csv:2: there is more than camera_path_error" },
 		{ "\"head, \"\"old\"\"\",hard", "\"head,hard", "frames.csv:50: scene" },
 		{ "scene,transfer", "scene,transfers", "frames.csv:1: does not name the columns" },
 		{ ",plan_ms,", ",", "frames.csv:1: does not name the columns" },
@@ -310,11 +323,14 @@ static void older_study_without_later_columns_is_read_and_not_resumed(void **sta
 	size_t done;
 	drop_last_column();
 	drop_last_column();
+	drop_last_column();
 	assert_int_equal(gz_study_read(folder, &log_of_test, &read), GZ_OK);
 	for (size_t i = 0; i < study.row_count; i++) {
 		assert_true(isnan(read.rows[i].prepare_ms));
 		assert_true(isnan(read.rows[i].turning_error));
+		assert_true(isnan(read.rows[i].camera_path_error));
 		study.rows[i].prepare_ms = study.rows[i].turning_error = NAN;
+		study.rows[i].camera_path_error = NAN;
 	}
 	same_study(&read, &study);
 	gz_study_free(&read);
@@ -528,6 +544,8 @@ TEST_SUITE(study_folder)
 		cmocka_unit_test_setup(study_written_is_read, name_folder),
 		cmocka_unit_test_setup(numbers_are_written_as_short_as_they_can_be, name_folder),
 		cmocka_unit_test_setup(study_without_min_move_and_per_cell_is_read, name_folder),
+		cmocka_unit_test_setup(study_of_a_version_without_camera_paths_is_read,
+				       name_folder),
 		cmocka_unit_test_setup(scene_of_a_study_is_found_from_any_folder, name_folder),
 		cmocka_unit_test_setup(shard_written_is_read, name_folder),
 		cmocka_unit_test_setup(interrupted_study_is_read_up_to_its_last_whole_unit,

@@ -163,6 +163,7 @@ static void same_rows(const struct gz_study *a, const struct gz_study *b)
 		same_errors(&x->standard, &y->standard);
 		same_number(x->flicker, y->flicker);
 		same_number(x->turning_error, y->turning_error);
+		same_number(x->camera_path_error, y->camera_path_error);
 		same_number(x->reference_db, y->reference_db);
 	}
 }
@@ -193,6 +194,7 @@ static void run_measures_each_frame_of_each_variant_at_each_point(void **state)
 			same_number(row->standard.foveal_flip, 0);
 			same_number(row->flicker, 0);
 			same_number(row->turning_error, 0);
+			assert_true(isnan(row->camera_path_error));
 			assert_true(row->converged.psnr_db > 25 && !isinf(row->converged.psnr_db));
 		} else if (row->variant == 2) {
 			assert_true(row->rays < 48 * 32);
@@ -325,6 +327,102 @@ static void table_of_a_variant_belongs_to_the_study(void **state)
 	assert_int_equal(gz_study_run(&request, folder, cache, nobody, &captured.log, &outcome),
 			 GZ_ERR_INVAL);
 	assert_non_null(strstr(captured.last, "is not the same scene"));
+}
+
+/* ---- camera paths ---- */
+
+/* A file of cameras that begin where the scene's is and turn by an angle a frame. */
+static const char *write_turn(const char *name, int cameras, double deg)
+{
+	static char path[64];
+	char text[8192];
+	int length = 0;
+	struct gz_camera camera = {
+		.eye = { 0.9, -1.2, 1.1 }, .up = { 0, 0, 1 }, .fov_deg = 32, .height = 1.5
+	};
+	for (int i = 0; i < cameras; i++) {
+		for (int axis = 0; axis < 6; axis++)
+			length += snprintf(text + length, sizeof text - (size_t)length, "%.17g ",
+					   axis < 3 ? camera.eye[axis] : camera.look_at[axis - 3]);
+		length += snprintf(text + length, sizeof text - (size_t)length, "\n");
+		gz_camera_turn(&camera, deg);
+	}
+	snprintf(path, sizeof path, "%s/%s", root, name);
+	write_text(path, text);
+	return path;
+}
+
+static void camera_path_that_turns_is_seen_as_the_turning_camera_is(void **state)
+{
+	(void)state;
+	struct gz_study_request request = request_of("grid:2x1");
+	request.accuracy = GZ_STUDY_ACCURACY_STANDARD;
+	request.camera_path = write_turn("turn.csv", 8, 0.25);
+	struct gz_study study = run(&request, new_folder());
+	assert_string_equal(study.camera_path, request.camera_path);
+	assert_int_equal(strlen(study.camera_path_hash), 64);
+	for (size_t i = 0; i < study.row_count; i++)
+		same_number(study.rows[i].camera_path_error, study.rows[i].turning_error);
+	assert_true(study.rows[4].variant == 2 && study.rows[4].camera_path_error > 0);
+	gz_study_free(&study);
+}
+
+/* The mean of both halves; and what is left of a third counts for nothing. */
+static void camera_path_is_followed_to_its_end(void **state)
+{
+	(void)state;
+	struct gz_study_request request = request_of("centre");
+	request.accuracy = GZ_STUDY_ACCURACY_STANDARD;
+	request.frames = 1;
+	request.camera_path = write_turn("long.csv", 20, 3);
+	struct gz_study whole = run(&request, new_folder());
+	double mean = 0;
+	for (int half = 0; half < 2; half++) {
+		char command[256];
+		snprintf(command, sizeof command, "cd %s && tail -n +%d long.csv | head -8 >half%d",
+			 root, 8 * half + 1, half);
+		assert_int_equal(system(command), 0);
+		char path[64];
+		snprintf(path, sizeof path, "%s/half%d", root, half);
+		request.camera_path = path;
+		struct gz_study part = run(&request, new_folder());
+		mean += part.rows[2].camera_path_error / 2;
+		gz_study_free(&part);
+	}
+	assert_true(fabs(whole.rows[2].camera_path_error - mean) < 1e-6 * mean);
+	gz_study_free(&whole);
+}
+
+static void changed_camera_path_is_another_study(void **state)
+{
+	(void)state;
+	struct gz_study_request request = request_of("centre");
+	struct gz_study_outcome outcome;
+	const char *folder = new_folder();
+	request.accuracy = GZ_STUDY_ACCURACY_STANDARD;
+	request.camera_path = write_turn("walk.csv", 8, 1);
+	struct gz_study study = run(&request, folder);
+	gz_study_free(&study);
+	write_turn("walk.csv", 8, 2);
+	assert_int_equal(gz_study_run(&request, folder, cache, nobody, &captured.log, &outcome),
+			 GZ_ERR_INVAL);
+	assert_non_null(strstr(captured.last, "the camera path's hash is "));
+	request.camera_path = NULL;
+	assert_int_equal(gz_study_run(&request, folder, cache, nobody, &captured.log, &outcome),
+			 GZ_ERR_INVAL);
+	assert_non_null(strstr(captured.last, "--camera-path is none, and was "));
+}
+
+static void camera_path_that_cannot_be_measured_is_refused(void **state)
+{
+	(void)state;
+	struct gz_study_request request = request_of("centre");
+	request.camera_path = write_turn("short.csv", 7, 1);
+	refused(&request, GZ_ERR_INVAL, "has 7 cameras; what the eye sees of changes takes 8");
+	request.camera_path = "/nowhere.csv";
+	refused(&request, GZ_ERR_NOT_FOUND, "/nowhere.csv");
+	request.accuracy = GZ_STUDY_ACCURACY_NONE;
+	refused(&request, GZ_ERR_INVAL, "--errors none leaves out");
 }
 
 /* ---- interruptions ---- */
@@ -562,6 +660,11 @@ TEST_SUITE(study_run)
 		cmocka_unit_test_setup(shards_that_do_not_belong_together_are_refused, begin),
 		cmocka_unit_test_setup(scene_changed_between_shards_is_refused, begin),
 		cmocka_unit_test_setup(table_of_a_variant_belongs_to_the_study, begin),
+		cmocka_unit_test_setup(camera_path_that_turns_is_seen_as_the_turning_camera_is,
+				       begin),
+		cmocka_unit_test_setup(camera_path_is_followed_to_its_end, begin),
+		cmocka_unit_test_setup(changed_camera_path_is_another_study, begin),
+		cmocka_unit_test_setup(camera_path_that_cannot_be_measured_is_refused, begin),
 		cmocka_unit_test_setup(killed_run_resumes_to_the_same_rows, begin),
 		cmocka_unit_test_setup(interrupted_run_leaves_whole_units_and_resumes, begin),
 		cmocka_unit_test_setup(different_run_into_the_same_folder_is_refused, begin),

@@ -108,6 +108,7 @@ static void errors_to_average(const struct gz_study *study, struct gz_study_row 
 		row->converged.flip = flip[row->point];
 		row->flicker = 0.25 * row->point;
 		row->turning_error = 0.5 * row->point;
+		row->camera_path_error = 0.75 * row->point;
 		row->reference_db = 60 - (double)row->point;
 	} else {
 		row->converged.psnr_db = INFINITY;
@@ -139,6 +140,7 @@ static void errors_are_averaged_as_costs_and_never_as_decibels(void **state)
 	assert_near(acuity->errors[GZ_AGAINST_CONVERGED][GZ_WHOLE_FLIP].p95, 0.19, "FLIP, p95");
 	assert_near(acuity->flicker.mean, 0.25, "flicker");
 	assert_near(acuity->turning_error.mean, 0.5, "turning");
+	assert_near(acuity->camera_path_error.mean, 0.75, "along the camera path");
 	assert_near(summary.groups[0].reference_db, 58, "worst PSNR of the reference");
 	const struct gz_error_summary *equal =
 		&summary.groups[0].series[0].errors[GZ_AGAINST_CONVERGED][GZ_WHOLE_PSNR];
