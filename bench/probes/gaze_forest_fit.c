@@ -47,10 +47,11 @@ struct settings {
 	double simulated;     /* weight of 4 ms of a simulated viewer */
 	double altered;       /* weight of altered copies of recordings */
 	double ringing;       /* weight of samples in which the eye rings after a saccade */
-	double folds; /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
-			 each of several films and persons */
-	double thin;  /* learn from every so many samples only: neighbours are alike */
-	double dense; /* 1: but from all of Andersson et al., each with so much less weight */
+	double folds;      /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
+			      each of several films and persons */
+	double recordings; /* 1: folds of several recordings each, whoever they are of */
+	double thin;       /* learn from every so many samples only: neighbours are alike */
+	double dense;      /* 1: but from all of Andersson et al., each with so much less weight */
 	double saccade, pursuit, noise; /* added to the scores of these classes */
 	double seed, tag, only_fold;
 };
@@ -64,12 +65,12 @@ static const struct {
 	{                                                      \
 #name, offsetof(struct settings, name), preset \
 	}
-	KEY(certain, 0),    KEY(trees, 100), KEY(leaves, 32),   KEY(depth, 8),     KEY(rate, 0.1),
-	KEY(lambda, 1),     KEY(bins, 64),   KEY(rows, 0.25),   KEY(columns, 0.4), KEY(least, 20),
-	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0), KEY(ringing, 1),   KEY(folds, 1),
-	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),   KEY(noise, 0),     KEY(tag, 0),
-	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),     KEY(thin, 1),      KEY(altered, 0),
-	KEY(rings, 0),      KEY(dense, 0),
+	KEY(certain, 0),    KEY(trees, 100), KEY(leaves, 32),    KEY(depth, 8),     KEY(rate, 0.1),
+	KEY(lambda, 1),     KEY(bins, 64),   KEY(rows, 0.25),    KEY(columns, 0.4), KEY(least, 20),
+	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0),  KEY(ringing, 1),   KEY(folds, 1),
+	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),    KEY(noise, 0),     KEY(tag, 0),
+	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),      KEY(thin, 1),      KEY(altered, 0),
+	KEY(rings, 0),      KEY(dense, 0),   KEY(recordings, 0),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -577,7 +578,7 @@ static double added_score(const struct training *t, int class)
 static int quantised(float value);
 
 /* The class of each row, as the filter labels one sample after the other. Whole recordings are
- * decoded further (try_costs()). */
+ * decoded further (try_ways()). */
 static void decide_classes(const struct training *t, uint8_t *out_class)
 {
 	struct gz_forest_memory memory = { .any = false };
@@ -639,15 +640,69 @@ static void print_figures(const struct figures *figures)
 
 /* ---- labels of whole recordings ---- */
 
-/* Costs that are tried, ms; all are combined. */
-static const int CHANGE_MS[] = { 0, 5, 10, 20 }, PURSUIT_MS[] = { 20, 40, 80, 160 };
-enum {
-	CHANGES = sizeof CHANGE_MS / sizeof CHANGE_MS[0],
-	PURSUITS = sizeof PURSUIT_MS / sizeof PURSUIT_MS[0],
+/* A way to decode the scores. */
+struct way {
+	const char *name;
+	struct gz_whole_costs costs;
+	struct gz_whole_odds odds;
+};
+enum { WAYS_MAX = 32 };
+
+/* Scores are in GZ_FOREST_UNIT. */
+static int32_t units(double logarithm)
+{
+	return (int32_t)lrint(logarithm / GZ_FOREST_UNIT);
+}
+
+struct ways {
+	struct way way[WAYS_MAX];
+	int count;
 };
 
-/* Decode the rows from @p begin to @p end, which are one recording, with all costs. */
-static void decode_track(const struct training *t, int begin, int end, uint8_t *class[])
+/* Add the presets, for something to be changed in them. */
+static struct way *add_way(struct ways *ways, const char *name)
+{
+	struct way *way = &ways->way[ways->count++];
+	*way = (struct way) { name, gz_whole_preset_costs, gz_whole_preset_odds };
+	return way;
+}
+
+/* List the presets, and ways in which one of them is another. */
+static void list_ways(struct ways *out)
+{
+	const struct gz_whole_odds own = { .limit = INT32_MAX / 2, .share = 1 };
+	out->count = 0;
+	(void)add_way(out, "presets");
+	add_way(out, "odds of each sample for itself")->odds = own;
+	add_way(out, "so, and nothing added")->odds = own;
+	memset(out->way[out->count - 1].costs.added, 0, sizeof out->way[0].costs.added);
+	add_way(out, "a change costs 0 ms")->costs.change_us = 0;
+	add_way(out, "a change costs 2 ms")->costs.change_us = 2000;
+	add_way(out, "a change costs 8 ms")->costs.change_us = 8000;
+	add_way(out, "a change costs 20 ms")->costs.change_us = 20000;
+	add_way(out, "pursuit costs 20 ms")->costs.pursuit_us = 20000;
+	add_way(out, "pursuit costs 80 ms")->costs.pursuit_us = 80000;
+	add_way(out, "saccade as it is")->costs.added[GZ_FOREST_SACCADE] = 0;
+	add_way(out, "saccade -0.4")->costs.added[GZ_FOREST_SACCADE] = units(-0.4);
+	add_way(out, "noise 0.3")->costs.added[GZ_FOREST_NOISE] = units(0.3);
+	add_way(out, "ringing as it is")->costs.added[GZ_FOREST_RINGING] = 0;
+	add_way(out, "ringing 0.6")->costs.added[GZ_FOREST_RINGING] = units(0.6);
+	add_way(out, "odds over 50 ms")->odds.reach_us = 50000;
+	add_way(out, "odds over 75 ms")->odds.reach_us = 75000;
+	add_way(out, "odds over 300 ms")->odds.reach_us = 300000;
+	add_way(out, "odds limited at 1.5")->odds.limit = units(1.5);
+	add_way(out, "odds limited at 6")->odds.limit = units(6);
+	add_way(out, "lead 0")->odds.lead = 0;
+	add_way(out, "lead 0.25")->odds.lead = units(0.25);
+	add_way(out, "lead 1")->odds.lead = units(1);
+	add_way(out, "share not used")->odds.share = 0;
+	add_way(out, "share 0.25")->odds.share = 0.25;
+	add_way(out, "share 1")->odds.share = 1;
+}
+
+/* Decode the rows from @p begin to @p end, which are one recording. */
+static void decode_track(const struct training *t, int begin, int end, const struct way *way,
+			 uint8_t *class)
 {
 	const size_t count = (size_t)(end - begin);
 	struct gz_movement_input *input = calloc(count, sizeof *input);
@@ -661,36 +716,31 @@ static void decode_track(const struct training *t, int begin, int end, uint8_t *
 		for (int k = 0; k < GZ_FOREST_CLASSES; k++)
 			scores[i][k] = quantised(t->score[row][k] + (float)added_score(t, k));
 	}
-	if (good)
-		gz_whole_adapt(input, scores, count);
-	for (int c = 0; good && c < CHANGES * PURSUITS; c++) {
-		const struct gz_whole_costs costs = { CHANGE_MS[c / PURSUITS] * 1000,
-						      PURSUIT_MS[c % PURSUITS] * 1000,
-						      { 0 } };
-		good = gz_whole_decode(input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count,
-				       &costs, class[c] + begin) == GZ_OK;
-	}
+	good = good && gz_whole_weigh(input, count, &way->odds, scores) == GZ_OK &&
+	       gz_whole_decode(input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count,
+			       &way->costs, class + begin) == GZ_OK;
 	free(input);
 	free(scores);
 	if (!good)
 		exit(1);
 }
 
-static void try_costs(const struct training *t, struct figures *figures)
+/* @p figures: of each way */
+static void try_ways(const struct training *t, struct figures figures[WAYS_MAX])
 {
-	uint8_t *class[CHANGES * PURSUITS];
-	for (int c = 0; c < CHANGES * PURSUITS; c++)
-		class[c] = new_array((size_t)t->row_count, 1);
-	for (int i = 0, end; i < t->row_count; i = end) {
-		for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
-			end++;
-		if (is_measured_row(t, i))
-			decode_track(t, i, end, class);
+	struct ways ways;
+	list_ways(&ways);
+	uint8_t *class = new_array((size_t)t->row_count, 1);
+	for (int w = 0; w < ways.count; w++) {
+		for (int i = 0, end; i < t->row_count; i = end) {
+			for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
+				end++;
+			if (is_measured_row(t, i))
+				decode_track(t, i, end, &ways.way[w], class);
+		}
+		add_figures(t, class, &figures[w]);
 	}
-	for (int c = 0; c < CHANGES * PURSUITS; c++) {
-		add_figures(t, class[c], &figures[c]);
-		free(class[c]);
-	}
+	free(class);
 }
 
 static void write_scores(const struct training *t, FILE *file)
@@ -704,12 +754,13 @@ static void write_scores(const struct training *t, FILE *file)
 	}
 }
 
-static void print_decoded(const struct training *t, const struct figures *decoded)
+static void print_ways(const struct training *t, const struct figures figures[WAYS_MAX])
 {
-	for (int c = 0; c < CHANGES * PURSUITS && t->settings.whole > 0; c++) {
-		printf("change %d ms, pursuit %d ms: ", CHANGE_MS[c / PURSUITS],
-		       PURSUIT_MS[c % PURSUITS]);
-		print_figures(&decoded[c]);
+	struct ways ways;
+	list_ways(&ways);
+	for (int w = 0; w < ways.count && t->settings.whole > 0; w++) {
+		printf("%s: ", ways.way[w].name);
+		print_figures(&figures[w]);
 	}
 }
 
@@ -988,8 +1039,22 @@ static void write_forest(const struct training *t, const char *folder)
 
 /* ---- folds ---- */
 
+/* A recording comes before the copies of it. */
+static int set_folds_by_recording(struct training *t)
+{
+	const int folds = (int)t->settings.folds;
+	int recordings = 0;
+	for (int i = 0; i < t->track_count; i++) {
+		recordings += is_original(&t->track[i]);
+		t->track[i].fold = t->track[i].simulated ? UNUSED : recordings % folds;
+	}
+	return folds;
+}
+
 static int set_folds(struct training *t)
 {
+	if (t->settings.recordings > 0)
+		return set_folds_by_recording(t);
 	static char names[FOLDS_MAX][64];
 	int films = 0;
 	if (t->settings.folds == 2) {
@@ -1120,21 +1185,21 @@ static void train_on_all(struct training *t, const char *folder)
 /* Measure the scores of an earlier run. */
 static void measure_again(struct training *t, const char *folder)
 {
-	static struct figures figures, decoded[CHANGES * PURSUITS];
+	static struct figures figures, decoded[WAYS_MAX];
 	uint8_t *class = new_array((size_t)t->row_count, 1);
 	read_scores(t, folder);
 	decide_classes(t, class);
 	add_figures(t, class, &figures);
 	print_figures(&figures);
 	if (t->settings.whole > 0)
-		try_costs(t, decoded);
-	print_decoded(t, decoded);
+		try_ways(t, decoded);
+	print_ways(t, decoded);
 	free(class);
 }
 
 static void train_on_folds(struct training *t, const char *folder)
 {
-	static struct figures figures[TREES_MAX / FIGURES_EVERY + 1], decoded[CHANGES * PURSUITS];
+	static struct figures figures[TREES_MAX / FIGURES_EVERY + 1], decoded[WAYS_MAX];
 	uint8_t *class = new_array((size_t)t->row_count, 1);
 	const int folds = set_folds(t);
 	char path[1024];
@@ -1152,7 +1217,7 @@ static void train_on_folds(struct training *t, const char *folder)
 		grow_forest(t, figures, class);
 		write_scores(t, scores);
 		if (t->settings.whole > 0)
-			try_costs(t, decoded);
+			try_ways(t, decoded);
 	}
 	fclose(scores);
 	free(class);
@@ -1162,7 +1227,7 @@ static void train_on_folds(struct training *t, const char *folder)
 		printf("%d trees: ", (n + 1) * FIGURES_EVERY);
 		print_figures(&figures[n]);
 	}
-	print_decoded(t, decoded);
+	print_ways(t, decoded);
 }
 
 int main(int argc, char **argv)

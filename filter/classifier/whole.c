@@ -15,7 +15,11 @@ enum { BLOCK = 4096 };
 /* Steps in time that count at most, in the costs, us. Chosen: no tracker has a lower rate. */
 static const int64_t STEP_MOST_US = 100000;
 
-const struct gz_whole_costs gz_whole_preset_costs = { 5000, 40000, { 0 } };
+/* Logarithms of odds: -0.2 for saccades, 0.3 for ringing. */
+const struct gz_whole_costs gz_whole_preset_costs = { 4000, 40000, { 0, -819, 0, 0, 1229 } };
+
+/* Odds of 20 count at most, and those of pursuit are 1.65 times as high. */
+const struct gz_whole_odds gz_whole_preset_odds = { 150000, 12288, 2048, 0.5 };
 
 /*
  * Features.
@@ -90,7 +94,7 @@ enum gz_result gz_whole_features(const struct gz_display *display,
 }
 
 /*
- * The share of pursuit.
+ * The odds of pursuit.
  */
 
 /* The usual share of pursuit in slow movement, and the time of slow movement that says as much as
@@ -124,41 +128,123 @@ static double log_odds(double share)
 	return gz_portable_log(share / (1 - share)) / GZ_FOREST_UNIT;
 }
 
-/* How likely a pursuit is, rather than a fixation, if its score is greater by @p lead. */
-static double pursuit_part(const int32_t scores[GZ_FOREST_CLASSES], int32_t lead)
+/* How likely a pursuit is, rather than a fixation, by its odds. */
+static double pursuit_part(int64_t odds)
 {
-	const double ahead = GZ_FOREST_UNIT * ((double)scores[GZ_FOREST_PURSUIT] + lead -
-					       scores[GZ_FOREST_FIXATION]);
-	return 1 / (1 + gz_portable_exp(-fmax(-50, fmin(50, ahead))));
+	return 1 / (1 + gz_portable_exp(-fmax(-50, fmin(50, GZ_FOREST_UNIT * (double)odds))));
 }
 
-static void lead_pursuit(int32_t scores[GZ_FOREST_CLASSES], int32_t lead)
+/* The slow movement of a recording. */
+struct slow_movement {
+	size_t count;  /* of its samples */
+	size_t *index; /* of each, in the recording */
+	int32_t *odds; /* of pursuit against fixation, GZ_FOREST_UNIT */
+	int64_t *us;   /* its time */
+};
+
+static void free_slow_movement(struct slow_movement *slow)
 {
-	int32_t *fixation = &scores[GZ_FOREST_FIXATION], *pursuit = &scores[GZ_FOREST_PURSUIT];
-	const int32_t before = *fixation > *pursuit ? *fixation : *pursuit;
-	*pursuit += lead;
-	const int32_t more = (*fixation > *pursuit ? *fixation : *pursuit) - before;
-	*fixation -= more;
-	*pursuit -= more;
+	free(slow->index);
+	free(slow->odds);
+	free(slow->us);
 }
 
-void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_FOREST_CLASSES],
-		    size_t count)
+static enum gz_result find_slow_movement(const struct gz_movement_input *input,
+					 const int32_t (*scores)[GZ_FOREST_CLASSES], size_t count,
+					 struct slow_movement *out)
+{
+	*out = (struct slow_movement) {
+		.index = malloc(count * sizeof *out->index),
+		.odds = malloc(count * sizeof *out->odds),
+		.us = malloc(count * sizeof *out->us),
+	};
+	if (!out->index || !out->odds || !out->us) {
+		free_slow_movement(out);
+		return GZ_ERR_NO_MEM;
+	}
+	for (size_t i = 0; i < count; i++) {
+		if (!input[i].valid || !is_slow(scores[i]))
+			continue;
+		out->index[out->count] = i;
+		out->odds[out->count] =
+			scores[i][GZ_FOREST_PURSUIT] - scores[i][GZ_FOREST_FIXATION];
+		out->us[out->count++] = step_before_us(input, i);
+	}
+	return GZ_OK;
+}
+
+/* By how much the share of pursuit raises its odds. */
+static int32_t share_lead(const struct slow_movement *slow)
 {
 	int32_t lead = 0;
 	for (int round = 0; round < SHARE_ROUNDS; round++) {
 		double pursuit_s = USUAL_S * USUAL_SHARE, slow_s = USUAL_S;
-		for (size_t i = 0; i < count; i++) {
-			if (!input[i].valid || !is_slow(scores[i]))
-				continue;
-			const double step_s = 1e-6 * (double)step_before_us(input, i);
-			pursuit_s += step_s * pursuit_part(scores[i], lead);
+		for (size_t i = 0; i < slow->count; i++) {
+			const double step_s = 1e-6 * (double)slow->us[i];
+			pursuit_s += step_s * pursuit_part((int64_t)slow->odds[i] + lead);
 			slow_s += step_s;
 		}
 		lead = (int32_t)floor(log_odds(pursuit_s / slow_s) - log_odds(USUAL_SHARE) + 0.5);
 	}
-	for (size_t i = 0; i < count; i++)
-		lead_pursuit(scores[i], lead);
+	return lead;
+}
+
+static void limit_odds(struct slow_movement *slow, int32_t lead, int32_t limit)
+{
+	for (size_t i = 0; i < slow->count; i++) {
+		const int64_t odds = (int64_t)slow->odds[i] + lead;
+		slow->odds[i] = (int32_t)(odds > limit ? limit : odds < -limit ? -limit : odds);
+	}
+}
+
+/* Change the worse one of fixation and pursuit, or the better one, so that the better one of both
+ * is as likely as before. */
+static void set_odds(int32_t scores[GZ_FOREST_CLASSES], int32_t odds)
+{
+	int32_t *fixation = &scores[GZ_FOREST_FIXATION], *pursuit = &scores[GZ_FOREST_PURSUIT];
+	const int32_t better = *fixation > *pursuit ? *fixation : *pursuit;
+	*fixation = better - (odds > 0 ? odds : 0);
+	*pursuit = better + (odds < 0 ? odds : 0);
+}
+
+/* Give each sample the mean of the odds around it, weighted by time. */
+static void spread_odds(const struct gz_movement_input *input, const struct slow_movement *slow,
+			int64_t reach_us, int32_t (*scores)[GZ_FOREST_CLASSES])
+{
+	int64_t sum = 0, us = 0;
+	size_t begin = 0, end = 0;
+	for (size_t i = 0; i < slow->count; i++) {
+		const int64_t now_ns = input[slow->index[i]].time_ns;
+		for (; end < slow->count &&
+		       (input[slow->index[end]].time_ns - now_ns) / 1000 <= reach_us;
+		     end++) {
+			sum += slow->odds[end] * slow->us[end];
+			us += slow->us[end];
+		}
+		for (; (now_ns - input[slow->index[begin]].time_ns) / 1000 > reach_us; begin++) {
+			sum -= slow->odds[begin] * slow->us[begin];
+			us -= slow->us[begin];
+		}
+		set_odds(scores[slow->index[i]], us > 0 ? (int32_t)(sum / us) : slow->odds[i]);
+	}
+}
+
+enum gz_result gz_whole_weigh(const struct gz_movement_input *input, size_t count,
+			      const struct gz_whole_odds *odds,
+			      int32_t (*scores)[GZ_FOREST_CLASSES])
+{
+	struct slow_movement slow;
+	if (count == 0)
+		return GZ_OK;
+	enum gz_result result = find_slow_movement(
+		input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count, &slow);
+	if (result != GZ_OK)
+		return result;
+	const double lead = odds->share * share_lead(&slow);
+	limit_odds(&slow, odds->lead + (int32_t)floor(lead + 0.5), odds->limit);
+	spread_odds(input, &slow, odds->reach_us, scores);
+	free_slow_movement(&slow);
+	return GZ_OK;
 }
 
 /*
@@ -321,11 +407,11 @@ enum gz_result gz_whole_label(const struct gz_display *display,
 		return GZ_ERR_NO_MEM;
 	const struct gz_whole_rows rows = { scores, score_row };
 	enum gz_result result = gz_whole_features(display, input, count, &rows);
-	if (result == GZ_OK) {
-		gz_whole_adapt(input, scores, count);
+	if (result == GZ_OK)
+		result = gz_whole_weigh(input, count, &gz_whole_preset_odds, scores);
+	if (result == GZ_OK)
 		result = gz_whole_decode(input, (const int32_t(*)[GZ_FOREST_CLASSES])scores, count,
 					 &gz_whole_preset_costs, out_class);
-	}
 	free(scores);
 	return result;
 }

@@ -54,8 +54,8 @@ struct gz_whole_costs {
 					   */
 };
 
-/** The costs that gz_whole_label() uses. Chosen on recordings that the forest did not learn from
- *  (docs/gaze-pipeline.md). */
+/** The costs and additions that gz_whole_label() uses. Chosen on recordings that the forest did not
+ * learn from (docs/gaze-pipeline.md). */
 extern const struct gz_whole_costs gz_whole_preset_costs;
 
 /**
@@ -85,20 +85,37 @@ enum gz_result gz_whole_decode(const struct gz_movement_input *input,
 enum gz_result gz_whole_gap_ns(const struct gz_movement_input *input, size_t count,
 			       int64_t *out_gap_ns);
 
-/**
- * Move the scores to the share of pursuit that the recording seems to have: in front of one scene
- * there is much to follow and in front of another nothing. Bayes' rule with a share that is found
- * by expectation maximisation (Saerens, Latinne and Decaestecker, "Adjusting the outputs of a
- * classifier to new a priori probabilities", Neural Computation 14, 2002). The better one of
- * fixation and pursuit stays as likely as it is against the other classes.
- *
- * @param input   @p count samples, each newer than the last; places are not read
- */
-void gz_whole_adapt(const struct gz_movement_input *input, int32_t (*scores)[GZ_FOREST_CLASSES],
-		    size_t count);
+/** How the odds of pursuit against fixation are weighed in the slow movement. */
+struct gz_whole_odds {
+	int64_t reach_us; /**< odds are the mean over so much time before and after a sample */
+	int32_t limit;    /**< in the mean, none count for more than this, GZ_FOREST_UNIT */
+	int32_t lead;     /**< is added to those of pursuit first, GZ_FOREST_UNIT */
+	double share;     /**< how much of what the share of pursuit says counts, 0 to 1 */
+};
+
+/** What gz_whole_label() uses. Chosen on recordings that the forest did not learn from
+ *  (docs/gaze-pipeline.md). */
+extern const struct gz_whole_odds gz_whole_preset_odds;
 
 /**
- * Label all samples: features, scores, the share of pursuit and the best sequence. Parameters and
+ * Weigh fixation against pursuit with more of the recording in view than a sample's own scores.
+ *
+ * The odds move to the share of pursuit that the recording seems to have: in front of one scene
+ * there is much to follow and in front of another nothing. Bayes' rule with a share that is found
+ * by expectation maximisation (Saerens, Latinne and Decaestecker, "Adjusting the outputs of a
+ * classifier to new a priori probabilities", Neural Computation 14, 2002). Then each sample gets
+ * the mean of the odds around it, across saccades: people label pursuit by whole stretches. The
+ * better one of fixation and pursuit stays as likely as it is against the other classes.
+ *
+ * @param input   @p count samples, each newer than the last; places are not read
+ * @retval GZ_ERR_NO_MEM  no memory; the scores are unchanged
+ */
+enum gz_result gz_whole_weigh(const struct gz_movement_input *input, size_t count,
+			      const struct gz_whole_odds *odds,
+			      int32_t (*scores)[GZ_FOREST_CLASSES]);
+
+/**
+ * Label all samples: features, scores, the odds of pursuit and the best sequence. Parameters and
  * results as gz_whole_features() and gz_whole_decode().
  */
 enum gz_result gz_whole_label(const struct gz_display *display,
