@@ -47,8 +47,9 @@ struct settings {
 	double simulated;     /* weight of 4 ms of a simulated viewer */
 	double altered;       /* weight of altered copies of recordings */
 	double ringing;       /* weight of samples in which the eye rings after a saccade */
-	double folds;      /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
-			      each of several films and persons */
+	double folds; /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
+			 each of several films and persons */
+	double worth; /* 1: measure what groups of features are worth, on what folds kept out */
 	double recordings; /* 1: folds of several recordings each, whoever they are of */
 	double thin;       /* learn from every so many samples only: neighbours are alike */
 	double dense;      /* 1: but from all of Andersson et al., each with so much less weight */
@@ -70,7 +71,7 @@ static const struct {
 	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0),  KEY(ringing, 1),   KEY(folds, 1),
 	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),    KEY(noise, 0),     KEY(tag, 0),
 	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),      KEY(thin, 1),      KEY(altered, 0),
-	KEY(rings, 0),      KEY(dense, 0),   KEY(recordings, 0),
+	KEY(rings, 0),      KEY(dense, 0),   KEY(recordings, 0), KEY(worth, 0),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -725,6 +726,16 @@ static void decode_track(const struct training *t, int begin, int end, const str
 		exit(1);
 }
 
+static void decode_all(const struct training *t, const struct way *way, uint8_t *out_class)
+{
+	for (int i = 0, end; i < t->row_count; i = end) {
+		for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
+			end++;
+		if (is_measured_row(t, i))
+			decode_track(t, i, end, way, out_class);
+	}
+}
+
 /* @p figures: of each way */
 static void try_ways(const struct training *t, struct figures figures[WAYS_MAX])
 {
@@ -732,12 +743,7 @@ static void try_ways(const struct training *t, struct figures figures[WAYS_MAX])
 	list_ways(&ways);
 	uint8_t *class = new_array((size_t)t->row_count, 1);
 	for (int w = 0; w < ways.count; w++) {
-		for (int i = 0, end; i < t->row_count; i = end) {
-			for (end = i; end < t->row_count && t->row[end].track == t->row[i].track;)
-				end++;
-			if (is_measured_row(t, i))
-				decode_track(t, i, end, &ways.way[w], class);
-		}
+		decode_all(t, &ways.way[w], class);
 		add_figures(t, class, &figures[w]);
 	}
 	free(class);
@@ -1037,6 +1043,97 @@ static void write_forest(const struct training *t, const char *folder)
 	fclose(file);
 }
 
+/* ---- what groups of features are worth ---- */
+
+/* Beginnings of the names of features that tell something together. */
+static const struct group {
+	const char *name;
+	const char *begins[8];
+} GROUPS[] = {
+	{ "nothing", { NULL } },
+	{ "speeds of the last 32 ms", { "speed_", "along_" } },
+	{ "distance relative to noise", { "signal_" } },
+	{ "distances and ways", { "distance_", "way_" } },
+	{ "spreads", { "spread_" } },
+	{ "turns and straightness", { "turn_", "straight_" } },
+	{ "across and down", { "across_", "down_" } },
+	{ "the slow movement now and before",
+	  { "slope", "residual", "stretch_ms", "last_", "mean_slow" } },
+	{ "where slow movement went", { "flow_", "burst_slope", "burst_last", "burst_flow" } },
+	{ "the last fast movement",
+	  { "burst_peak", "burst_ms", "burst_deg", "burst_part", "burst_down", "since_fast",
+	    "since_peak" } },
+	{ "what was lost, and when", { "lost_", "since_lost", "valid" } },
+	{ "beyond the display", { "beyond_" } },
+};
+enum { GROUPS_COUNT = sizeof GROUPS / sizeof GROUPS[0] };
+
+static bool is_in_group(const struct group *group, int feature)
+{
+	const char *name = gz_movement_feature_names[feature % GZ_MOVEMENT_FEATURES];
+	for (size_t i = 0; i < sizeof group->begins / sizeof group->begins[0]; i++)
+		if (group->begins[i] &&
+		    strncmp(name, group->begins[i], strlen(group->begins[i])) == 0)
+			return true;
+	return false;
+}
+
+/* The rows of one data set that are measured. @return how many */
+static int list_rows(const struct training *t, bool andersson, int *out_rows)
+{
+	int count = 0;
+	for (int i = 0; i < t->row_count; i++)
+		if (is_measured_row(t, i) && t->track[t->row[i].track].andersson == andersson)
+			out_rows[count++] = i;
+	return count;
+}
+
+/* Score the measured rows of a data set anew, each with the group's features of another one: the
+ * one half of all of them away, so that the features are as usual as they were, and tell nothing.
+ */
+static void score_exchanged(struct training *t, const struct group *group, bool andersson)
+{
+	const int count = list_rows(t, andersson, t->order);
+	uint8_t bins[FEATURES_MAX];
+	for (int i = 0; i < count; i++) {
+		const int row = t->order[i];
+		const uint8_t *others = bins_of(t, t->order[(i + count / 2) % count]);
+		memcpy(bins, bins_of(t, row), (size_t)t->feature_count);
+		for (int f = 0; f < t->feature_count; f++)
+			if (is_in_group(group, f))
+				bins[f] = others[f];
+		memcpy(t->score[row], t->base, sizeof t->base);
+		for (int n = 0; n < t->tree_count; n++) {
+			const struct node *leaf = leaf_of(&t->tree[n], bins);
+			for (int k = 0; k < t->class_count; k++)
+				t->score[row][k] += leaf->value[k];
+		}
+	}
+}
+
+/* Add the figures that the present forest has without each group. The scores are lost. */
+static void add_worths(struct training *t, uint8_t *class, struct figures figures[GROUPS_COUNT])
+{
+	struct way preset = { "presets", gz_whole_preset_costs, gz_whole_preset_odds };
+	for (int g = 0; g < GROUPS_COUNT; g++) {
+		score_exchanged(t, &GROUPS[g], false);
+		score_exchanged(t, &GROUPS[g], true);
+		if (t->settings.whole > 0)
+			decode_all(t, &preset, class);
+		else
+			decide_classes(t, class);
+		add_figures(t, class, &figures[g]);
+	}
+}
+
+static void print_worths(const struct figures figures[GROUPS_COUNT])
+{
+	for (int g = 0; g < GROUPS_COUNT; g++) {
+		printf("without %s: ", GROUPS[g].name);
+		print_figures(&figures[g]);
+	}
+}
+
 /* ---- folds ---- */
 
 /* A recording comes before the copies of it. */
@@ -1200,6 +1297,7 @@ static void measure_again(struct training *t, const char *folder)
 static void train_on_folds(struct training *t, const char *folder)
 {
 	static struct figures figures[TREES_MAX / FIGURES_EVERY + 1], decoded[WAYS_MAX];
+	static struct figures worths[GROUPS_COUNT];
 	uint8_t *class = new_array((size_t)t->row_count, 1);
 	const int folds = set_folds(t);
 	char path[1024];
@@ -1218,6 +1316,8 @@ static void train_on_folds(struct training *t, const char *folder)
 		write_scores(t, scores);
 		if (t->settings.whole > 0)
 			try_ways(t, decoded);
+		if (t->settings.worth > 0)
+			add_worths(t, class, worths);
 	}
 	fclose(scores);
 	free(class);
@@ -1228,6 +1328,8 @@ static void train_on_folds(struct training *t, const char *folder)
 		print_figures(&figures[n]);
 	}
 	print_ways(t, decoded);
+	if (t->settings.worth > 0)
+		print_worths(worths);
 }
 
 int main(int argc, char **argv)
