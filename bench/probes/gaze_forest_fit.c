@@ -49,6 +49,7 @@ struct settings {
 	double ringing;       /* weight of samples in which the eye rings after a saccade */
 	double folds; /* 0: train on all; 1: by film and person; 2: by data set; more: so many,
 			 each of several films and persons */
+	double each;  /* 1: with again=1, print figures of each film and each recording */
 	double worth; /* 1: measure what groups of features are worth, on what folds kept out */
 	double recordings; /* 1: folds of several recordings each, whoever they are of */
 	double thin;       /* learn from every so many samples only: neighbours are alike */
@@ -71,7 +72,7 @@ static const struct {
 	KEY(andersson, 5),  KEY(slow, 0),    KEY(simulated, 0),  KEY(ringing, 1),   KEY(folds, 1),
 	KEY(seed, 1),       KEY(saccade, 0), KEY(pursuit, 0),    KEY(noise, 0),     KEY(tag, 0),
 	KEY(only_fold, -1), KEY(whole, 0),   KEY(again, 0),      KEY(thin, 1),      KEY(altered, 0),
-	KEY(rings, 0),      KEY(dense, 0),   KEY(recordings, 0), KEY(worth, 0),
+	KEY(rings, 0),      KEY(dense, 0),   KEY(recordings, 0), KEY(worth, 0),     KEY(each, 0),
 };
 enum { KEY_COUNT = sizeof KEYS / sizeof KEYS[0] };
 
@@ -1279,6 +1280,62 @@ static void train_on_all(struct training *t, const char *folder)
 	print_worth(t);
 }
 
+/* What people and a forest call the slow movement of one film or recording. */
+struct slow_figures {
+	char name[64];
+	double samples, ours[2], theirs[2], both[2]; /* fixations and pursuits */
+	double fixation_lost, pursuit_lost;          /* that are the other one to the forest */
+};
+
+static void add_slow(struct slow_figures *figures, int ours, int theirs)
+{
+	static const int classes[2] = { GZ_FOREST_FIXATION, GZ_FOREST_PURSUIT };
+	for (int c = 0; c < 2; c++) {
+		figures->ours[c] += ours == classes[c];
+		figures->theirs[c] += theirs == classes[c];
+		figures->both[c] += ours == classes[c] && theirs == classes[c];
+	}
+	figures->fixation_lost += theirs == GZ_FOREST_FIXATION && ours == GZ_FOREST_PURSUIT;
+	figures->pursuit_lost += theirs == GZ_FOREST_PURSUIT && ours == GZ_FOREST_FIXATION;
+	figures->samples++;
+}
+
+static void print_slow(const struct slow_figures *f)
+{
+	printf("%s: people %.3f fixation %.3f pursuit, forest %.3f %.3f, F1 %.3f %.3f, "
+	       "fixation called pursuit %.2f, pursuit called fixation %.2f\n",
+	       f->name, f->theirs[0] / f->samples, f->theirs[1] / f->samples,
+	       f->ours[0] / f->samples, f->ours[1] / f->samples,
+	       2 * f->both[0] / fmax(f->ours[0] + f->theirs[0], 1),
+	       2 * f->both[1] / fmax(f->ours[1] + f->theirs[1], 1),
+	       f->fixation_lost / fmax(f->theirs[0], 1), f->pursuit_lost / fmax(f->theirs[1], 1));
+}
+
+/* For each film and, with both coders together, for each recording of Andersson et al. */
+static void print_each(const struct training *t, const uint8_t *class)
+{
+	static struct slow_figures all[FOLDS_MAX];
+	int count = 0;
+	for (int i = 0; i < t->row_count; i++) {
+		const struct row *row = &t->row[i];
+		const struct track *track = &t->track[row->track];
+		const char *name = track->andersson ? track->name : track->kind;
+		if (!is_measured_row(t, i) || !row->human[0])
+			continue;
+		int n = 0;
+		while (n < count && strcmp(all[n].name, name) != 0)
+			n++;
+		if (n == FOLDS_MAX)
+			continue;
+		if (n == count)
+			strcpy(all[count++].name, name);
+		for (int p = 0; p < (track->andersson ? 2 : 1); p++)
+			add_slow(&all[n], class[i], row -> label[p]);
+	}
+	for (int n = 0; n < count; n++)
+		print_slow(&all[n]);
+}
+
 /* Measure the scores of an earlier run. */
 static void measure_again(struct training *t, const char *folder)
 {
@@ -1288,6 +1345,11 @@ static void measure_again(struct training *t, const char *folder)
 	decide_classes(t, class);
 	add_figures(t, class, &figures);
 	print_figures(&figures);
+	const struct way preset = { "presets", gz_whole_preset_costs, gz_whole_preset_odds };
+	if (t->settings.whole > 0)
+		decode_all(t, &preset, class);
+	if (t->settings.each > 0)
+		print_each(t, class);
 	if (t->settings.whole > 0)
 		try_ways(t, decoded);
 	print_ways(t, decoded);
