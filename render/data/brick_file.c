@@ -191,7 +191,7 @@ enum {
 	AT_GREATEST = 96,
 	AT_BRICKS = 104,
 	AT_SIZE = 112,
-	AT_ZERO = 120,
+	AT_MODALITY = 120,
 	AT_CRC = 124,
 };
 
@@ -222,6 +222,7 @@ void gz_brick_header_encode(const struct gz_brick_header *header,
 	put_double(out_bytes + AT_GREATEST, header->stored_max);
 	put64(out_bytes + AT_BRICKS, header->brick_count);
 	put64(out_bytes + AT_SIZE, header->file_size);
+	put32(out_bytes + AT_MODALITY, (uint32_t)header->modality);
 	put32(out_bytes + AT_CRC, header_crc(out_bytes));
 }
 
@@ -271,9 +272,11 @@ const char *gz_brick_header_decode(const uint8_t bytes[GZ_BRICK_HEADER_BYTES],
 		return "damaged header; write it again";
 	if (get32(bytes + AT_TYPE) >= GZ_VOXEL_TYPE_COUNT ||
 	    get32(bytes + AT_EDGE) != GZ_BRICK_EDGE || get32(bytes + AT_ORIENTED) > 1 ||
-	    get32(bytes + AT_SPACING_ASSUMED) > 1 || get32(bytes + AT_ZERO) != 0)
+	    get32(bytes + AT_SPACING_ASSUMED) > 1 ||
+	    get32(bytes + AT_MODALITY) >= GZ_MODALITY_COUNT)
 		return "an unknown type, edge or flag in its header";
 	header.type = (enum gz_voxel_type)get32(bytes + AT_TYPE);
+	header.modality = (enum gz_modality)get32(bytes + AT_MODALITY);
 	for (size_t axis = 0; axis < 3; axis++) {
 		const uint32_t dim = get32(bytes + AT_DIMS + 4 * axis);
 		header.dims[axis] = dim <= GZ_VOLUME_DIM_MAX ? (int)dim : 0;

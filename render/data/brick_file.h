@@ -102,6 +102,7 @@ struct gz_brick_header {
 	double spacing[3];
 	enum gz_voxel_type type;
 	bool oriented, spacing_assumed; /**< see struct gz_volume */
+	enum gz_modality modality;
 	double slope, intercept, stored_min, stored_max;
 	uint64_t brick_count; /**< entries of the index */
 	uint64_t file_size;

@@ -245,6 +245,7 @@ static enum gz_result write_rest(struct writer *writer, const struct gz_volume *
 		.type = volume->type,
 		.oriented = volume->oriented,
 		.spacing_assumed = volume->spacing_assumed,
+		.modality = volume->modality,
 		.slope = volume->slope,
 		.intercept = volume->intercept,
 		.stored_min = volume->stored_min,

@@ -31,6 +31,9 @@ static struct gz_volume volume_of_header(const struct gz_decode_header *header)
 		.spacing_assumed = header->spacing_assumed == 1,
 		.oriented = header->oriented == 1,
 		.labels = header->labels == 1,
+		.modality = header->modality < GZ_MODALITY_COUNT
+				    ? (enum gz_modality)header->modality
+				    : GZ_MODALITY_UNKNOWN,
 	};
 	for (int axis = 0; axis < 3; axis++) {
 		volume.dims[axis] = header->dims[axis];
@@ -61,8 +64,9 @@ static enum gz_result accept_header(void *user, const struct gz_decode_header *h
 	const struct gz_loading *loading = decoding->file->loading;
 	const struct gz_volume volume = volume_of_header(header);
 	if (!gz_volume_layout_valid(&volume) || header->oriented > 1 || header->labels > 1 ||
-	    header->spacing_assumed > 1 || header->colour > GZ_COLOUR_LUMINANCE ||
-	    !isfinite(volume.slope) || volume.slope == 0 || !isfinite(volume.intercept)) {
+	    header->spacing_assumed > 1 || header->modality >= GZ_MODALITY_COUNT ||
+	    header->colour > GZ_COLOUR_LUMINANCE || !isfinite(volume.slope) || volume.slope == 0 ||
+	    !isfinite(volume.intercept)) {
 		gz_err(decoding->file->log,
 		       "%s: its decoder made a volume of %d x %d x %d voxels of kind %u that "
 		       "cannot be; the file was not read",

@@ -27,6 +27,7 @@ static enum gz_result load_bricks(const struct gz_volume_file *file, struct gz_v
 		.stored_min = header->stored_min,
 		.stored_max = header->stored_max,
 		.spacing_assumed = header->spacing_assumed,
+		.modality = header->modality,
 		.oriented = header->oriented,
 	};
 	memcpy(volume.dims, header->dims, sizeof volume.dims);

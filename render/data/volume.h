@@ -127,6 +127,15 @@ enum gz_volume_colour {
 	GZ_COLOUR_ALPHA,     /**< the alpha of the colours */
 };
 
+/** By which kind of device a volume was made, as far as its file says so. */
+enum gz_modality {
+	GZ_MODALITY_UNKNOWN, /**< not said; most formats cannot */
+	GZ_MODALITY_CT,
+	GZ_MODALITY_MR,
+	GZ_MODALITY_OTHER,
+	GZ_MODALITY_COUNT,
+};
+
 /** Longest edge of a volume, voxels. */
 #define GZ_VOLUME_DIM_MAX 16384
 
@@ -164,7 +173,8 @@ struct gz_volume {
 	double intercept;
 	double stored_min, stored_max; /**< over all voxels; of a series, over all time points */
 	bool oriented;                 /**< it is known where right, front and up are */
-	bool labels;   /**< the file says that values are numbers of things, with nothing between */
+	bool labels; /**< the file says that values are numbers of things, with nothing between */
+	enum gz_modality modality;
 	size_t mapped; /**< bytes of the file that holds the voxels, on the disk or in memory, which
 			  may be mapped to be read only; 0: memory of the program */
 	int time_points; /**< of its file, which hold volumes of one layout; 0 or 1: no series */

@@ -260,6 +260,7 @@ static enum gz_result allocate_voxels(struct import *import, const struct axis_m
 	const bool coloured = volume->colour != GZ_COLOUR_NONE;
 	volume->type = coloured ? GZ_VOXEL_U8 : import->conversion->type;
 	volume->spacing_assumed = layout->spacing_assumed;
+	volume->modality = layout->modality;
 	volume->oriented = layout->oriented;
 	volume->labels = layout->labels;
 	const double slope = coloured ? 1 : layout->slope;

@@ -33,6 +33,7 @@ struct gz_import_layout {
 	double direction[3][3]; /**< [axis][x, y, z]: where each axis points in RAS+; any length */
 	bool oriented;          /**< direction is anatomical */
 	bool labels;            /**< numbers name things; see struct gz_volume */
+	enum gz_modality modality;
 	enum gz_raw_type type;
 	bool big_endian;
 	int channels; /**< numbers of a voxel: 0 or 1 its value, 3 red, green and blue, 4 and alpha;

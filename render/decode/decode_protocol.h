@@ -63,7 +63,8 @@ struct gz_decode_header {
 				 */
 	int32_t time_points;    /**< 0 or 1: no series; known at the end */
 	uint16_t labels;        /**< 1: values are numbers of things; else 0 */
-	uint16_t spacing_assumed; /**< 1: the file does not state the spacing; else 0 */
+	uint8_t spacing_assumed; /**< 1: the file does not state the spacing; else 0 */
+	uint8_t modality;        /**< enum gz_modality */
 };
 
 /** Size of a line with its NUL, bytes. */

@@ -582,8 +582,9 @@ enum gz_result gz_transfer_of_volume(const struct gz_volume *volume, int choice,
 		gz_histogram_count(volume, GZ_HISTOGRAM_BINS_LEAST, 0, NULL, log, &histogram);
 	if (result != GZ_OK)
 		return result;
-	const enum gz_transfer_preset preset = choice > 0 ? (enum gz_transfer_preset)(choice - 1)
-							  : gz_transfer_preset_for(&histogram);
+	const enum gz_transfer_preset preset =
+		choice > 0 ? (enum gz_transfer_preset)(choice - 1)
+			   : gz_transfer_preset_for(&histogram, volume->modality);
 	gz_transfer_preset_make(preset, &histogram, volume, out_transfer);
 	return GZ_OK;
 }

@@ -198,6 +198,25 @@ static void make_field(struct making *making)
 	gz_transfer_colour(making->transfer, GZ_COLOUR_MAP_VIRIDIS);
 }
 
+/* Signals of a scanner have no unit: the two thresholds separate air, and bone without signal, from
+ * tissue, and tissue from what is brightest. What is dim is a veil, so that a bright scalp does not
+ * hide all that is within. */
+static void make_mri(struct making *making)
+{
+	double threshold[2];
+	gz_histogram_two_thresholds(making->histogram, threshold);
+	const struct colour dark = { 0.30, 0.10, 0.10 }, flesh = { 0.78, 0.46, 0.38 };
+	const struct colour pale = { 0.92, 0.80, 0.68 }, white = { 1, 0.97, 0.92 };
+	const double begin = background_end(making, true);
+	const double middle = (threshold[0] + threshold[1]) / 2;
+	add_point(making, making->low, dark, 0);
+	add_point(making, begin, dark, 0);
+	add_point(making, threshold[0], flesh, per_voxel(making, 0.3, 0.1));
+	add_point(making, middle, flesh, per_voxel(making, 0.8, 0.06));
+	add_point(making, threshold[1], pale, per_voxel(making, 0.9, 0.04));
+	add_point(making, making->high, white, per_voxel(making, 0.97, 0.02));
+}
+
 static const struct colour ct_flesh = { 0.82, 0.47, 0.37 }, ct_bone = { 0.93, 0.86, 0.73 },
 			   ct_white = { 1, 0.98, 0.94 };
 
@@ -262,60 +281,70 @@ static void make_ct_lung(struct making *making)
 	add_point(making, making->high, wall, 0);
 }
 
+/* What the values of a volume must be for a look. */
+enum values {
+	ANY_VALUES,
+	HOUNSFIELD, /* units */
+	SIGNALS,    /* of magnetic resonance */
+};
+
 /* One look. */
 static const struct preset {
 	struct gz_transfer_preset_text text;
 	void (*make)(struct making *making);
-	bool for_hounsfield;
+	enum values values;
 } presets[GZ_PRESET_COUNT] = {
 	[GZ_PRESET_TISSUE] = { { "Soft tissue and bone",
 				 "soft tissue as a veil, dense tissue solid", true },
 			       make_tissue,
-			       false },
+			       ANY_VALUES },
 	[GZ_PRESET_SURFACE] = { { "Surface", "one surface, where object and background separate",
 				  true },
 				make_surface,
-				false },
+				ANY_VALUES },
 	[GZ_PRESET_GLASS] = { { "Glass", "two translucent surfaces, the inner one amber", true },
 			      make_glass,
-			      false },
-	[GZ_PRESET_GREY] = { { "Grey ramp", "denser is brighter", false }, make_grey, false },
+			      ANY_VALUES },
+	[GZ_PRESET_GREY] = { { "Grey ramp", "denser is brighter", false }, make_grey, ANY_VALUES },
 	[GZ_PRESET_HEAT] = { { "Heat", "dark red to white, for fields and densities", false },
 			     make_heat,
-			     false },
+			     ANY_VALUES },
 	[GZ_PRESET_INVERSE] = { { "Inverse", "denser is darker, for a bright background", false },
 				make_inverse,
-				false },
+				ANY_VALUES },
 	[GZ_PRESET_XRAY] = { { "X-ray", "faint: depth adds up, nothing is hidden", false },
 			     make_xray,
-			     false },
+			     ANY_VALUES },
 	[GZ_PRESET_FIELD] = { { "Field", "the most frequent value is clear, viridis", false },
 			      make_field,
-			      false },
+			      ANY_VALUES },
 	[GZ_PRESET_CT_TISSUE] = { { "CT: bone in soft tissue",
 				    "bone within a veil of muscle and organs", true },
 				  make_ct_tissue,
-				  true },
+				  HOUNSFIELD },
 	[GZ_PRESET_CT_BONE] = { { "CT: bone", "bone alone, from 180 HU", true },
 				make_ct_bone,
-				true },
+				HOUNSFIELD },
 	[GZ_PRESET_CT_VESSELS] = { { "CT: vessels", "red: with contrast medium, from 120 HU; bone",
 				     true },
 				   make_ct_vessels,
-				   true },
+				   HOUNSFIELD },
 	[GZ_PRESET_CT_SKIN] = { { "CT: skin", "the body's surface, from -500 HU", true },
 				make_ct_skin,
-				true },
+				HOUNSFIELD },
 	[GZ_PRESET_CT_LUNG] = { { "CT: lung", "lung and airways; soft tissue and bone are clear",
 				  false },
 				make_ct_lung,
-				true },
+				HOUNSFIELD },
+	[GZ_PRESET_MRI] = { { "MRI", "dim tissue as a veil, bright tissue solid", true },
+			    make_mri,
+			    SIGNALS },
 };
 
 const char *const gz_transfer_preset_choices[] = { "auto",    "tissue",    "surface", "glass",
 						   "grey",    "heat",      "inverse", "xray",
 						   "field",   "ct_tissue", "ct_bone", "ct_vessels",
-						   "ct_skin", "ct_lung",   NULL };
+						   "ct_skin", "ct_lung",   "mri",     NULL };
 
 const struct gz_transfer_preset_text *gz_transfer_preset_text(enum gz_transfer_preset which)
 {
@@ -347,9 +376,35 @@ bool gz_histogram_is_hounsfield(const struct gz_histogram *histogram)
 	return air > several * between && tissue > several * between && tissue * 300 > tissue_least;
 }
 
-bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram)
+/* Files of CT have Hounsfield units (PS3.3, C.8.2.1.1.1), if they were rescaled to them: then the
+ * fat of any body is below -50, and air far below. */
+static bool is_rescaled(const struct gz_histogram *histogram)
 {
-	return !presets[which].for_hounsfield || gz_histogram_is_hounsfield(histogram);
+	return histogram->total > 0 && histogram->data_min <= -50 && histogram->data_min > -33000 &&
+	       histogram->data_max < 33000;
+}
+
+/* Whether values are Hounsfield units, by what made them and what they are. */
+static bool are_hounsfield(const struct gz_histogram *histogram, enum gz_modality modality)
+{
+	return modality == GZ_MODALITY_CT
+		       ? is_rescaled(histogram)
+		       : modality == GZ_MODALITY_UNKNOWN && gz_histogram_is_hounsfield(histogram);
+}
+
+bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram,
+			     enum gz_modality modality)
+{
+	switch (presets[which].values) {
+	case HOUNSFIELD:
+		return are_hounsfield(histogram, modality);
+	case SIGNALS:
+		return modality == GZ_MODALITY_MR ||
+		       (modality == GZ_MODALITY_UNKNOWN && !gz_histogram_is_hounsfield(histogram));
+	case ANY_VALUES:
+		break;
+	}
+	return true;
 }
 
 /* The most frequent values, as a share of the range without the outermost thousandths, and the
@@ -376,18 +431,21 @@ static double find_ground(const struct gz_histogram *histogram, double *out_shar
 	return at;
 }
 
-enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram)
+enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram,
+					       enum gz_modality modality)
 {
 	/* Chosen: a ground fills a quarter of a scan's box and more, and is darker than all else,
 	 * or brighter. What oscillates around a value in the middle is a field. */
 	static const double ground_share = 0.25, field_share = 0.1;
 	double share;
-	if (gz_histogram_is_hounsfield(histogram))
+	if (are_hounsfield(histogram, modality))
 		return GZ_PRESET_CT_TISSUE;
 	const double at = find_ground(histogram, &share);
 	if (at > 0.9 && share > ground_share)
 		return GZ_PRESET_INVERSE;
-	return at > 0.3 && at < 0.7 && share > field_share ? GZ_PRESET_FIELD : GZ_PRESET_TISSUE;
+	if (at > 0.3 && at < 0.7 && share > field_share)
+		return GZ_PRESET_FIELD;
+	return modality == GZ_MODALITY_MR ? GZ_PRESET_MRI : GZ_PRESET_TISSUE;
 }
 
 void gz_transfer_preset_make(enum gz_transfer_preset which, const struct gz_histogram *histogram,
@@ -404,7 +462,7 @@ void gz_transfer_preset_make(enum gz_transfer_preset which, const struct gz_hist
 	const double top = gz_histogram_percentile(histogram, 0.9999);
 	if (top - making.low < (making.high - making.low) / 2 && top > making.low)
 		making.high = top;
-	if (presets[which].for_hounsfield)
+	if (presets[which].values == HOUNSFIELD)
 		making.low = fmax(making.low, -1024);
 	presets[which].make(&making);
 	out_transfer->has_range = making.high > making.low;

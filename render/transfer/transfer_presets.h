@@ -25,6 +25,7 @@ enum gz_transfer_preset {
 	GZ_PRESET_CT_VESSELS, /**< filled with contrast medium, and bone */
 	GZ_PRESET_CT_SKIN,
 	GZ_PRESET_CT_LUNG,
+	GZ_PRESET_MRI, /**< dim tissue as a veil, bright tissue solid */
 	GZ_PRESET_COUNT,
 };
 
@@ -48,14 +49,18 @@ const struct gz_transfer_preset_text *gz_transfer_preset_text(enum gz_transfer_p
  */
 bool gz_histogram_is_hounsfield(const struct gz_histogram *histogram);
 
-/** Whether a preset makes sense: those for Hounsfield units do not for other values. */
-bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram);
+/** Whether a preset makes sense: those for Hounsfield units and for MRI do not for other values.
+ *  CT that was rescaled has Hounsfield units; where the file does not say what made the volume, the
+ *  histogram tells, and MRI is possible. */
+bool gz_transfer_preset_fits(enum gz_transfer_preset which, const struct gz_histogram *histogram,
+			     enum gz_modality modality);
 
 /** The preset for a volume without a transfer function: bone in soft tissue if values are
  * Hounsfield units; GZ_PRESET_INVERSE in front of a bright ground, and GZ_PRESET_FIELD if the most
- * frequent value lies in the middle of the others; else GZ_PRESET_TISSUE, which shows something of
- * every volume. */
-enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram);
+ * frequent value lies in the middle of the others; GZ_PRESET_MRI if the file says so; else
+ * GZ_PRESET_TISSUE, which shows something of every volume. */
+enum gz_transfer_preset gz_transfer_preset_for(const struct gz_histogram *histogram,
+					       enum gz_modality modality);
 
 /**
  * Make a transfer function that shows a volume.

@@ -426,6 +426,8 @@ static void say_faulty(const char *fault)
 		header->slope = 0;
 	else if (strcmp(fault, "oriented") == 0)
 		header->oriented = 2;
+	else if (strcmp(fault, "modality") == 0)
+		header->modality = 4; /* one more than there are */
 	else if (strcmp(fault, "colour") == 0)
 		header->colour = 2; /* alpha, which no decoder gives */
 	else if (strcmp(fault, "wide colour") == 0)

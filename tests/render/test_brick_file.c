@@ -255,6 +255,7 @@ static void damaged_files_are_refused_with_a_line(void **state)
 		{ 16, 64, true, "an unknown type, edge or flag" },
 		{ 20, 2, true, "an unknown type, edge or flag" },
 		{ 44, 2, true, "an unknown type, edge or flag" },
+		{ 120, 4, true, "an unknown type, edge or flag" },
 		{ 24, 0, true, "dims or spacing out of range" },
 		{ 24, 0x80000001, true, "dims or spacing out of range" },
 		{ 28, 16385, true, "dims or spacing out of range" },

@@ -358,6 +358,7 @@ static void headers_that_cannot_be_are_refused(void **state)
 				      "slope.dcm",
 				      "huge.dcm",
 				      "oriented.dcm",
+				      "modality.dcm",
 				      "not_finite.dcm",
 				      "colour.dcm",
 				      "wide_colour.dcm",

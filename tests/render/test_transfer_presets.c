@@ -160,9 +160,9 @@ static bool is_hounsfield(const struct gz_volume *volume)
 {
 	struct gz_histogram histogram;
 	assert_int_equal(gz_histogram_count(volume, 256, 1, NULL, NULL, &histogram), GZ_OK);
-	assert_true(gz_transfer_preset_fits(GZ_PRESET_TISSUE, &histogram));
-	assert_int_equal(gz_transfer_preset_for(&histogram),
-			 gz_transfer_preset_fits(GZ_PRESET_CT_BONE, &histogram)
+	assert_true(gz_transfer_preset_fits(GZ_PRESET_TISSUE, &histogram, GZ_MODALITY_UNKNOWN));
+	assert_int_equal(gz_transfer_preset_for(&histogram, GZ_MODALITY_UNKNOWN),
+			 gz_transfer_preset_fits(GZ_PRESET_CT_BONE, &histogram, GZ_MODALITY_UNKNOWN)
 				 ? GZ_PRESET_CT_TISSUE
 				 : GZ_PRESET_TISSUE);
 	return gz_histogram_is_hounsfield(&histogram);
@@ -196,7 +196,7 @@ static double opacity_at(const struct gz_transfer *transfer, double value)
 }
 
 /* A tenth of the voxels are spread over all values, the others have one value and some noise. */
-static enum gz_transfer_preset preset_around(double value)
+static enum gz_transfer_preset preset_around(double value, enum gz_modality modality)
 {
 	struct gz_volume volume = { .dims = { 50, 50, 10 },
 				    .spacing = { 1, 1, 1 },
@@ -210,16 +210,70 @@ static enum gz_transfer_preset preset_around(double value)
 	gz_volume_find_range(&volume);
 	assert_int_equal(gz_histogram_count(&volume, 256, 1, NULL, NULL, &histogram), GZ_OK);
 	gz_volume_free(&volume);
-	return gz_transfer_preset_for(&histogram);
+	return gz_transfer_preset_for(&histogram, modality);
 }
 
 static void ground_decides_which_preset_a_volume_gets(void **state)
 {
 	(void)state;
-	assert_int_equal(preset_around(0), GZ_PRESET_TISSUE);
-	assert_int_equal(preset_around(0.2), GZ_PRESET_TISSUE);
-	assert_int_equal(preset_around(0.5), GZ_PRESET_FIELD);
-	assert_int_equal(preset_around(1), GZ_PRESET_INVERSE);
+	static const struct {
+		double ground;
+		enum gz_transfer_preset preset, of_mr;
+	} rows[] = {
+		{ 0, GZ_PRESET_TISSUE, GZ_PRESET_MRI },
+		{ 0.2, GZ_PRESET_TISSUE, GZ_PRESET_MRI },
+		{ 0.5, GZ_PRESET_FIELD, GZ_PRESET_FIELD },
+		{ 1, GZ_PRESET_INVERSE, GZ_PRESET_INVERSE },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		const double ground = rows[i].ground;
+		assert_int_equal(preset_around(ground, GZ_MODALITY_UNKNOWN), rows[i].preset);
+		assert_int_equal(preset_around(ground, GZ_MODALITY_CT), rows[i].preset);
+		assert_int_equal(preset_around(ground, GZ_MODALITY_OTHER), rows[i].preset);
+		assert_int_equal(preset_around(ground, GZ_MODALITY_MR), rows[i].of_mr);
+	}
+}
+
+/* A body whose air was cut off is known as CT by its file alone; what looks like Hounsfield units
+ * is none if the file says otherwise. */
+static void modality_decides_which_presets_fit(void **state)
+{
+	(void)state;
+	struct gz_volume head = body(-1024, 0), cropped = body(-1024, 0), counts = body(0, 0);
+	uint16_t *voxels = cropped.voxels;
+	for (size_t i = 0; i < gz_volume_voxel_count(&cropped); i++)
+		voxels[i] = voxels[i] < 900 ? 900 : voxels[i];
+	gz_volume_find_range(&cropped);
+	const struct {
+		const struct gz_volume *volume;
+		enum gz_modality modality;
+		bool bone, mri;
+		enum gz_transfer_preset preset;
+	} rows[] = {
+		{ &head, GZ_MODALITY_UNKNOWN, true, false, GZ_PRESET_CT_TISSUE },
+		{ &head, GZ_MODALITY_CT, true, false, GZ_PRESET_CT_TISSUE },
+		{ &head, GZ_MODALITY_MR, false, true, GZ_PRESET_MRI },
+		{ &head, GZ_MODALITY_OTHER, false, false, GZ_PRESET_TISSUE },
+		{ &cropped, GZ_MODALITY_UNKNOWN, false, true, GZ_PRESET_TISSUE },
+		{ &cropped, GZ_MODALITY_CT, true, false, GZ_PRESET_CT_TISSUE },
+		{ &counts, GZ_MODALITY_CT, false, false, GZ_PRESET_TISSUE }, /* not rescaled */
+		{ &counts, GZ_MODALITY_MR, false, true, GZ_PRESET_MRI },
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		struct gz_histogram histogram;
+		assert_int_equal(gz_histogram_count(rows[i].volume, 256, 1, NULL, NULL, &histogram),
+				 GZ_OK);
+		const enum gz_modality modality = rows[i].modality;
+		if (gz_transfer_preset_fits(GZ_PRESET_CT_BONE, &histogram, modality) !=
+			    rows[i].bone ||
+		    gz_transfer_preset_fits(GZ_PRESET_MRI, &histogram, modality) != rows[i].mri ||
+		    !gz_transfer_preset_fits(GZ_PRESET_GREY, &histogram, modality) ||
+		    gz_transfer_preset_for(&histogram, modality) != rows[i].preset)
+			fail_msg("row %zu: %d", i, gz_transfer_preset_for(&histogram, modality));
+	}
+	gz_volume_free(&head);
+	gz_volume_free(&cropped);
+	gz_volume_free(&counts);
 }
 
 static void presets_for_ct_show_their_tissue(void **state)
@@ -269,6 +323,7 @@ TEST_SUITE(transfer_presets)
 		cmocka_unit_test(far_tail_of_few_voxels_is_left_out_of_the_range),
 		cmocka_unit_test(hounsfield_units_are_known_by_air_and_water),
 		cmocka_unit_test(ground_decides_which_preset_a_volume_gets),
+		cmocka_unit_test(modality_decides_which_presets_fit),
 		cmocka_unit_test(presets_for_ct_show_their_tissue),
 		cmocka_unit_test(each_has_a_name_a_title_and_a_line),
 	};

@@ -1,4 +1,5 @@
-"""DICOM that is no plain stack of slices, as gazeview reads it: dose, segmentations, series over time.
+"""DICOM that is no plain stack of slices, as gazeview reads it: dose, segmentations, series over
+time, and what each modality is shown by.
 
 dicom_kinds.py GAZEVIEW
 
@@ -24,7 +25,7 @@ except ImportError as missing:
     sys.exit(77)
 
 from dicom import GAZEVIEW, ORIENTATIONS, new_image, turn_to_ras
-from picture import run, shows_between
+from picture import read_png, run, shows_between
 from raw_nrrd import read_nrrd
 
 SERIES = "1.2.826.0.1.3680043.2.1125.8"
@@ -32,6 +33,8 @@ CLASSES = {
     "RTDOSE": "1.2.840.10008.5.1.4.1.1.481.2",
     "SEG": "1.2.840.10008.5.1.4.1.1.66.4",
     "MR": "1.2.840.10008.5.1.4.1.1.4",
+    "CT": "1.2.840.10008.5.1.4.1.1.2",
+    "PT": "1.2.840.10008.5.1.4.1.1.128",
 }
 ROWS, COLUMNS, SLICES = 11, 13, 9  # no multiple of 8: frames of bits begin within bytes
 SPACING = (0.5, 0.75, 2.5)  # of columns, rows, slices
@@ -324,6 +327,51 @@ class OverTime(AgainstNumpy):
         image.save_as(self.path("enhanced.dcm"), write_like_original=False)
         for t in range(self.points):
             self.check(self.path("enhanced.dcm"), self.volume(t), ORIENTATIONS[0], "--time-point", t + 1)
+
+
+class Looks(AgainstNumpy):
+    """A series without a scene opens with a transfer function for what it shows."""
+
+    def write(self, modality, least):
+        """A ball in a ball of the same numbers for every modality, none below least."""
+        numbers = numpy.where(ball((4, 5, 6), 2), 400, numpy.where(ball((4, 5, 6), 4), 40, -1000))
+        numbers = numpy.maximum(numbers, least).astype("<i2")
+        folder = self.path(f"{modality or 'none'}{-least}")
+        os.mkdir(folder)
+        for k in range(SLICES):
+            image = new_image_of(modality if modality in CLASSES else "CT", k + 1, ORIENTATIONS[0])
+            image.Modality = modality
+            image.ImagePositionPatient = [float(x) for x in ORIGIN + (0, 0, SPACING[2] * k)]
+            set_pixels(image, numbers[k])
+            image.save_as(os.path.join(folder, f"{k}.dcm"), write_like_original=False)
+        return folder
+
+    def pixels(self, path, *more):
+        picture = self.path("picture.png")
+        done = run(GAZEVIEW, "--headless", path, "--size", "48x32", "--backend", "cpu", "--out", picture, *more)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return read_png(picture).rows
+
+    def assert_shown_by(self, path, preset):
+        shown = self.pixels(path)
+        same = [name for name in ("tissue", "ct_tissue", "mri") if shown == self.pixels(path, "--transfer.preset", name)]
+        self.assertEqual(same, [preset], path)
+
+    def test_each_modality_has_a_look_of_its_own(self):
+        for modality, least, preset in (("MR", -1000, "mri"), ("CT", -1000, "ct_tissue"), ("CT", -100, "ct_tissue"),
+                                        ("PT", -1000, "tissue"), ("", -1000, "ct_tissue"), ("", -100, "tissue"),
+                                        ("OT", -1000, "ct_tissue")):
+            with self.subTest(modality=modality, least=least):
+                self.assert_shown_by(self.write(modality, least), preset)
+
+    def test_bricks_keep_the_modality(self):
+        folder = self.write("MR", -1000)
+        done = run(GAZEVIEW, folder, "--write-volume", self.path("mr.gzb"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_shown_by(self.path("mr.gzb"), "mri")
+        done = run(GAZEVIEW, folder, "--write-volume", self.path("mr.nrrd"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_shown_by(self.path("mr.nrrd"), "ct_tissue")  # NRRD does not say it
 
 
 if __name__ == "__main__":

@@ -357,7 +357,8 @@ static void list_presets(const struct gz_transfer_panel *panel, struct preset_li
 	for (int i = 0; i < GZ_PRESET_COUNT; i++) {
 		const enum gz_transfer_preset preset = (enum gz_transfer_preset)i;
 		const struct gz_transfer_preset_text *text = gz_transfer_preset_text(preset);
-		if (!panel->histogram || !gz_transfer_preset_fits(preset, panel->histogram))
+		if (!panel->histogram ||
+		    !gz_transfer_preset_fits(preset, panel->histogram, panel->volume->modality))
 			continue;
 		snprintf(list->lines[count], sizeof list->lines[count], "%s: %s", text->title,
 			 text->about);

@@ -51,6 +51,7 @@ static struct gz_decode_header header_of(const struct gz_volume *volume)
 					   .oriented = volume->oriented,
 					   .labels = volume->labels,
 					   .spacing_assumed = volume->spacing_assumed,
+					   .modality = (uint8_t)volume->modality,
 					   .colour = (uint32_t)volume->colour,
 					   .time_points = volume->time_points,
 					   .slope = volume->slope,

@@ -31,8 +31,9 @@ struct gz_dicom_geometry {
 	double direction[3][3]; /**< [axis][x, y, z] in RAS+ */
 	bool oriented;          /**< the files told where they lie */
 	bool labels;            /**< they are a segmentation */
-	enum gz_raw_type type;  /**< of what gz_dicom_series_read() gives, in host byte order */
-	int channels;           /**< numbers of a voxel: 1, or 3 for red, green and blue */
+	enum gz_modality modality;
+	enum gz_raw_type type; /**< of what gz_dicom_series_read() gives, in host byte order */
+	int channels;          /**< numbers of a voxel: 1, or 3 for red, green and blue */
 	double slope, intercept;
 	int time_points;      /**< stacks of slices, one behind the other; 1 or more */
 	uint64_t bytes_bound; /**< the most bytes that the files' pixel data can hold */
