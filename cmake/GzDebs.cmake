@@ -100,7 +100,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
 
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers | systemd-sysusers")
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "mricron-data, ffmpeg, gnuplot-nox | gnuplot")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "mricron-data, invesalius-examples, ffmpeg, gnuplot-nox | gnuplot")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "invesalius-examples")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA "${debian}/postinst;${debian}/prerm;${debian}/postrm;${debian}/conffiles")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)

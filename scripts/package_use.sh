@@ -75,7 +75,7 @@ as_visitor gazecast/scripts/demo --installed --headless --size 640x360 --frames 
 note "the demo ran: $(sed -n 's/^ *ratio *//p' /home/visitor/gazecast/demo-output/summary.txt)"
 
 # All but macaque, which needs OpenGL.
-for scene in atlas brain chameleon head hippocampus shells splash supernova tracts; do
+for scene in atlas brain chameleon face head hippocampus shells splash supernova tracts; do
 	open_scene $scene
 done
 note "scenes open without other data"

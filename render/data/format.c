@@ -7,9 +7,9 @@
 #define GZ_LOG_MODULE "volume"
 
 const struct gz_volume_format *const gz_volume_formats[] = {
-	&gz_format_nifti,  &gz_format_mgh,           &gz_format_nrrd, &gz_format_metaimage,
-	&gz_format_bricks, &gz_format_dicom,         &gz_format_minc, &gz_format_foreign,
-	&gz_format_raw,    &gz_format_raw_by_layout,
+	&gz_format_nifti,   &gz_format_mgh,   &gz_format_nrrd,          &gz_format_metaimage,
+	&gz_format_bricks,  &gz_format_dicom, &gz_format_minc,          &gz_format_inv3,
+	&gz_format_foreign, &gz_format_raw,   &gz_format_raw_by_layout,
 };
 const size_t gz_volume_format_count = sizeof gz_volume_formats / sizeof gz_volume_formats[0];
 

@@ -82,8 +82,8 @@ gz_volume_writer *gz_volume_writer_by_name(const char *path);
 
 /** The rows. */
 extern const struct gz_volume_format gz_format_bricks, gz_format_dicom, gz_format_foreign,
-	gz_format_metaimage, gz_format_mgh, gz_format_minc, gz_format_nifti, gz_format_nrrd,
-	gz_format_raw, gz_format_raw_by_layout;
+	gz_format_inv3, gz_format_metaimage, gz_format_mgh, gz_format_minc, gz_format_nifti,
+	gz_format_nrrd, gz_format_raw, gz_format_raw_by_layout;
 
 /**
  * Write @p volume and its coarser levels as a file of bricks. It gets its name when it is complete.

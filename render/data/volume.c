@@ -22,6 +22,22 @@ const char *const gz_raw_type_names[] = { "uint8", "int8",    "uint16",  "int16"
 
 const char *const gz_resampling_names[] = { "off", "linear", "nearest", NULL };
 
+enum gz_modality gz_modality_of_term(const char *term)
+{
+	static const struct {
+		const char *term;
+		enum gz_modality modality;
+	} terms[] = {
+		{ "CT", GZ_MODALITY_CT },           { "MR", GZ_MODALITY_MR },
+		{ "", GZ_MODALITY_UNKNOWN },        { "OT", GZ_MODALITY_UNKNOWN },
+		{ "UNKNOWN", GZ_MODALITY_UNKNOWN }, /* InVesalius */
+	};
+	for (size_t i = 0; i < sizeof terms / sizeof terms[0]; i++)
+		if (strcmp(term, terms[i].term) == 0)
+			return terms[i].modality;
+	return GZ_MODALITY_OTHER;
+}
+
 size_t gz_voxel_size(enum gz_voxel_type type)
 {
 	static const size_t sizes[GZ_VOXEL_TYPE_COUNT] = { 1, 2, 4 };

@@ -136,6 +136,10 @@ enum gz_modality {
 	GZ_MODALITY_COUNT,
 };
 
+/** The modality of a term of DICOM (PS3.3, C.7.3.1.1.1): "CT", "MR". OT, other, says nothing of the
+ *  values, like an empty one. */
+enum gz_modality gz_modality_of_term(const char *term);
+
 /** Longest edge of a volume, voxels. */
 #define GZ_VOLUME_DIM_MAX 16384
 

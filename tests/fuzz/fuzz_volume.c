@@ -18,7 +18,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 /* New names are put last: the corpus has indices. */
 static const char *const names[] = { "a.nii", "a.nii.gz",  "a.nrrd",   "a.nhdr", "a.mha",
 				     "a.mhd", "a.raw.zst", "a.raw.gz", "a.mgz",  "a.hdr",
-				     "a.img", "a",         "a.mgh" };
+				     "a.img", "a",         "a.mgh",    "a.inv3" };
 #define NAME_COUNT (sizeof names / sizeof names[0])
 
 /* Files of 4 KiB that headers may name. */

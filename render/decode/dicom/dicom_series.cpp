@@ -152,15 +152,6 @@ gz_result reader::check_head(const head &h) const
 	return GZ_OK;
 }
 
-/* From (0008,0060), PS3.3, C.7.3.1.1.1. OT, other, says nothing of the values. */
-gz_modality modality_of(const std::string &term)
-{
-	return term == "CT"                   ? GZ_MODALITY_CT
-	       : term == "MR"                 ? GZ_MODALITY_MR
-	       : term.empty() || term == "OT" ? GZ_MODALITY_UNKNOWN
-					      : GZ_MODALITY_OTHER;
-}
-
 /* The slices of all files, which must be of one format. */
 gz_result reader::join()
 {
@@ -169,7 +160,7 @@ gz_result reader::join()
 	numbers = heads[0].numbers;
 	segments = heads[0].segments;
 	geometry.labels = segments != nullptr;
-	geometry.modality = modality_of(heads[0].modality);
+	geometry.modality = gz_modality_of_term(heads[0].modality.c_str());
 	if (segments && heads.size() > 1) {
 		gz_err(log, "%s: holds %zu segmentations in one series; name one of its files",
 		       path.c_str(), heads.size());
