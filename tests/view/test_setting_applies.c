@@ -57,6 +57,12 @@ static void keys_behind_a_switch_apply_once_it_is_on(void **state)
 	assert_false(gz_setting_applies(&settings, "camera.fov_deg"));
 	assert_true(gz_setting_applies(&settings, "camera.height"));
 
+	assert_true(gz_setting_applies(&settings, "clip.plane"));
+	assert_false(gz_setting_applies(&settings, "clip.normal"));
+	settings.rays.clip.plane = true;
+	assert_true(gz_setting_applies(&settings, "clip.normal"));
+	assert_true(gz_setting_applies(&settings, "clip.offset"));
+
 	settings.rays.shading = GZ_SHADING_NONE;
 	settings.rays.light.occlusion = 0;
 	assert_false(gz_setting_applies(&settings, "light.ambient"));

@@ -230,8 +230,9 @@ class Menus(WindowCase):
         self.until(lambda p: not any(self.crosses(p)) and self.shows_something(p),
                    "the picture alone")
 
-    def place_of(self, world):
-        """Where a point of the world is in the window, by the scene's own camera."""
+    def own_camera(self):
+        """The scene's own camera: the place of the eye, the field of view in degrees, and the
+        directions to the right, up and ahead."""
         with open(SCENE, encoding="utf-8") as text:
             keys = dict(line.split(" = ", 1) for line in text.read().splitlines() if " = " in line)
         eye, middle, up = ([float(n) for n in keys[key].split()] for key in ("eye", "look_at", "up"))
@@ -244,9 +245,13 @@ class Menus(WindowCase):
 
         ahead = unit([m - e for m, e in zip(middle, eye)])
         right = unit(cross(ahead, up))
-        axes = (right, cross(right, ahead), ahead)
+        return eye, float(keys["fov_deg"]), (right, cross(right, ahead), ahead)
+
+    def place_of(self, world):
+        """Where a point of the world is in the window, by the scene's own camera."""
+        eye, fov_deg, axes = self.own_camera()
         x, y, depth = (sum(a * (w - e) for a, w, e in zip(axis, world, eye)) for axis in axes)
-        scale = SIZE[1] / 2 / math.tan(math.radians(float(keys["fov_deg"])) / 2) / depth
+        scale = SIZE[1] / 2 / math.tan(math.radians(fov_deg) / 2) / depth
         return SIZE[0] / 2 + x * scale, SIZE[1] / 2 - y * scale
 
     def test_clip_box_is_dragged_by_a_handle_undone_and_removed(self):
@@ -271,6 +276,82 @@ class Menus(WindowCase):
         self.press("shift+c")  # the handles go
         part = (0, 60, SIZE[0], SIZE[1] - 64)  # between the captions
         self.until(lambda p: p.part(*part) == whole.part(*part), "the whole volume")
+
+    def saved_clip(self):
+        """The clip plane of the saved scene: whether it is on, its normal, its offset."""
+        keys = {"plane": "false", "normal": "1 0 0", "offset": "0.5"}  # not saved until changed
+        keys.update(line.split(" = ", 1) for line in self.saved() if " = " in line)
+        return (keys["plane"] == "true", [float(n) for n in keys["normal"].split()], float(keys["offset"]))
+
+    def has_handle(self, picture, at):
+        """Whether something of a clip plane's handles is near a place."""
+        return any(picture.at(round(at[0]) + a, round(at[1]) + b) == (96, 220, 255)
+                   for a in range(-4, 5) for b in range(-4, 5))
+
+    def test_clip_plane_is_moved_tilted_turned_to_the_camera_and_removed(self):
+        self.start_own_scene()
+        _, _, (right, up, ahead) = self.own_camera()
+        axis = max(range(3), key=lambda i: abs(ahead[i]))
+        first = [0, 0, 0]
+        first[axis] = -1 if ahead[axis] > 0 else 1  # towards the viewer
+        middle = self.place_of((0, 0, 0))
+        away = self.place_of([0.2 * n for n in first])
+        at, end = [round(n) for n in middle], [round(n) for n in away]
+        self.move(*end)  # the gaze, as after the drag
+        whole = self.rest()
+        self.assertFalse(self.has_handle(whole, middle))
+        self.find("oblique")
+        self.press("Return")
+        shown = self.until(lambda p: self.has_handle(p, middle), "a handle")
+        self.assertTrue(self.has_handle(shown, (middle[0], middle[1] - 46)))  # the ring
+        self.assertEqual(self.saved_clip(), (True, first, 0.5))
+        # Along its normal, by as much as the mouse goes.
+        self.drag(at, end)
+        on, normal, offset = self.saved_clip()
+        self.assertAlmostEqual(offset, 0.7, delta=0.03)
+        self.assertEqual(normal, first)
+        self.assertTrue(self.has_handle(self.rest(), away))
+        self.press("ctrl+z")
+        self.assertEqual(self.saved_clip()[2], 0.5)
+        self.press("ctrl+shift+z")
+        self.assertAlmostEqual(self.saved_clip()[2], offset, delta=1e-9)
+        self.press("ctrl+z")
+        # By half of the ring's radius to the right: half a radian about the view's upward axis.
+        self.drag((at[0], at[1] - 46), (at[0] + 23, at[1] - 46))
+        on, normal, offset = self.saved_clip()
+        turned = ([math.cos(0.5) * r + math.sin(0.5) * a for r, a in zip(right, ahead)], up,
+                  [math.cos(0.5) * a - math.sin(0.5) * r for r, a in zip(right, ahead)])
+        for i, found in enumerate(normal):
+            wanted = sum(first[axis] * before[axis] * after[i]
+                         for before, after in zip((right, up, ahead), turned))
+            self.assertAlmostEqual(found, wanted, delta=0.03)
+        self.assertAlmostEqual(offset, 0.5, delta=0.02)  # about the handle
+        self.press("ctrl+z")
+        self.assertEqual(self.saved_clip(), (True, first, 0.5))
+        # Facing the camera, a drag upwards pushes it away.
+        self.find("faces the camera")
+        self.press("Return")
+        on, normal, offset = self.saved_clip()
+        for found, wanted in zip(normal, ahead):
+            self.assertAlmostEqual(found, -wanted, delta=1e-3)
+        self.assertAlmostEqual(offset, 0.5, delta=0.02)
+        self.drag(at, (at[0], at[1] - SIZE[1] // 8))
+        self.assertAlmostEqual(self.saved_clip()[2], offset - 1 / 8, delta=0.02)
+        self.find("turn the clip plane round")
+        self.press("Return")
+        on, normal, offset = self.saved_clip()
+        self.assertAlmostEqual(normal[0], ahead[0], delta=1e-3)
+        self.assertAlmostEqual(offset, 0.5 + 1 / 8, delta=0.02)
+        # The handles go and come by the key; the cut stays.
+        self.press("shift+p")
+        self.until(lambda p: not self.has_handle(p, (middle[0], middle[1] - 46)), "no handles")
+        self.assertEqual(self.saved_clip(), (True, normal, offset))
+        self.find("remove the clip plane")
+        self.press("Return")
+        self.move(*end)
+        part = (0, 60, SIZE[0], SIZE[1] - 64)  # between the captions
+        self.until(lambda p: p.part(*part) == whole.part(*part), "the whole volume")
+        self.assertFalse(self.saved_clip()[0])
 
     def test_start_window_opens_a_recent_scene_by_its_picture(self):
         self.start_own_scene()

@@ -187,6 +187,11 @@ static bool with_shadows(const struct gz_scene_settings *settings)
 }
 
 /* Shadows alone know how much light is ambient and where the rest comes from. */
+static bool with_a_plane(const struct gz_scene_settings *settings)
+{
+	return settings->rays.clip.plane;
+}
+
 static bool with_a_lamp(const struct gz_scene_settings *settings)
 {
 	return with_light(settings) || with_shadows(settings);
@@ -260,6 +265,8 @@ static const struct {
 } conditions[] = {
 	{ "camera.fov_deg", in_perspective },
 	{ "camera.height", in_parallel },
+	{ "clip.normal", with_a_plane },
+	{ "clip.offset", with_a_plane },
 	{ "light.occlusion_radius", with_occlusion },
 	{ "light.occlusion", with_lit_samples },
 	{ "light.shadow_reach", with_shadows },

@@ -1,19 +1,11 @@
 /* The part that moves the faces of the clip box by handles in the picture. */
 #include <math.h>
-#include <stdio.h>
 
 #include <GLFW/glfw3.h>
 
-#include "render/picture/camera.h"
 #include "view/panels/widgets.h"
-#include "view/window/sections.h"
+#include "view/window/handles.h"
 #include "view/window/window_state.h"
-
-#define GZ_LOG_MODULE "window"
-
-/* A handle and the room around it in which the mouse takes it, unscaled. */
-#define HANDLE_RADIUS 6.0F
-#define HANDLE_REACH  11.0F
 
 /* The least that remains of an edge of the box (chosen: a slice of most volumes). */
 #define LEAST_SHARE 0.005
@@ -29,13 +21,11 @@ struct gz_window_clip {
 	int face; /* that is dragged: axis, + 3 for the greatest; NO_FACE: none */
 };
 
-static const struct gz_paint edge_paint = { 255, 214, 64, 150 };
-static const struct gz_paint handle_paint = { 255, 214, 64, 255 };
+static const struct gz_paint paint = { 255, 214, 64, 255 };
 
 static bool handles_are_there(const struct gz_window *window)
 {
-	return window->clip->shown && window->maker && !window->alone &&
-	       !gz_window_has_sections(window);
+	return window->clip->shown && gz_window_has_handles(window);
 }
 
 static struct gz_clip_region *box_of(struct gz_window *window)
@@ -48,20 +38,11 @@ static struct gz_clip_region *box_of(struct gz_window *window)
 static bool place_in_window(const struct gz_window *window, const double share[3],
 			    struct gz_place *out_place)
 {
-	const struct gz_volume *volume = &gz_frame_maker_scene(window->maker)->volume;
 	double half[3], world[3];
-	int width, height;
-	struct gz_point point;
-	gz_volume_half_extent(volume, half);
+	gz_volume_half_extent(&gz_frame_maker_scene(window->maker)->volume, half);
 	for (int axis = 0; axis < 3; axis++)
 		world[axis] = (2 * share[axis] - 1) * half[axis];
-	glfwGetWindowSize(window->glfw, &width, &height);
-	if (width < 1 || height < 1 ||
-	    !gz_camera_project(&window->settings.camera, width, height, world, &point))
-		return false;
-	const struct gz_place room = gz_widgets_room();
-	*out_place = (struct gz_place) { (float)point.x * room.x, (float)point.y * room.y };
-	return true;
+	return gz_handle_place(window, world, out_place);
 }
 
 /* The middle of a face; with `moved`, moved outwards along its axis by this share of the edge. */
@@ -79,14 +60,13 @@ static bool face_in_window(struct gz_window *window, int face, double moved,
 /* The face whose handle is under the mouse, the nearest one. */
 static int face_at_mouse(struct gz_window *window)
 {
-	double nearest = (double)(HANDLE_REACH * gz_widgets_scale());
+	double nearest = (double)GZ_HANDLE_REACH;
 	int found = NO_FACE;
 	for (int face = 0; face < FACES; face++) {
 		struct gz_place at;
 		if (!face_in_window(window, face, 0, &at))
 			continue;
-		const double away =
-			hypot((double)at.x - window->cursor[0], (double)at.y - window->cursor[1]);
+		const double away = gz_handle_away(window, at);
 		if (away <= nearest) {
 			nearest = away;
 			found = face;
@@ -140,7 +120,7 @@ static void draw_edges(struct gz_window *window)
 			const bool begins = place_in_window(window, share, &from);
 			share[axis] = box->greatest[axis];
 			if (begins && place_in_window(window, share, &to))
-				gz_draw_line(GZ_LAYER_PICTURE, from, to, edge_paint, 1);
+				gz_handle_draw_line(from, to, paint);
 		}
 }
 
@@ -154,27 +134,16 @@ static void draw_handles(struct gz_window *window, const struct gz_window_gaze *
 	draw_edges(window);
 	for (int face = 0; face < FACES; face++) {
 		struct gz_place at;
-		if (!face_in_window(window, face, 0, &at))
-			continue;
-		if (face == marked)
-			gz_draw_disc(GZ_LAYER_PICTURE, at, HANDLE_RADIUS, handle_paint);
-		else
-			gz_draw_circle(GZ_LAYER_PICTURE, at, HANDLE_RADIUS, handle_paint, 2);
+		if (face_in_window(window, face, 0, &at))
+			gz_handle_draw(at, paint, face == marked);
 	}
-}
-
-static bool has_scene_to_clip(const struct gz_window *window)
-{
-	return window->maker && !window->alone;
 }
 
 static void toggle_handles(struct gz_window *window, int number)
 {
 	(void)number;
 	window->clip->shown = !window->clip->shown;
-	if (window->clip->shown && gz_window_has_sections(window))
-		gz_info(window->log, "the clip box has its handles in the picture without slices");
-	gz_window_wake_panels(window);
+	gz_handles_toggled(window, window->clip->shown, "clip box");
 }
 
 static bool are_handles_on(const struct gz_window *window, int number)
@@ -185,14 +154,19 @@ static bool are_handles_on(const struct gz_window *window, int number)
 
 static bool is_clipped(const struct gz_window *window)
 {
-	return has_scene_to_clip(window) &&
-	       !gz_clip_region_same(&window->settings.rays.clip, &gz_clip_whole);
+	struct gz_clip_region box = window->settings.rays.clip;
+	box.plane = false;
+	return gz_window_can_clip(window) && gz_clip_region_cuts(&box);
 }
 
 static void show_whole_box(struct gz_window *window, int number)
 {
 	(void)number;
-	*box_of(window) = gz_clip_whole;
+	struct gz_clip_region *box = box_of(window);
+	for (int axis = 0; axis < 3; axis++) {
+		box->least[axis] = gz_clip_whole.least[axis];
+		box->greatest[axis] = gz_clip_whole.greatest[axis];
+	}
 	window->cast_needed = true;
 }
 
@@ -207,9 +181,9 @@ static const struct gz_window_action clip_actions[] = {
 	  .on_picture = true,
 	  .words = "clip cut crop slab handles faces",
 	  .is_on = are_handles_on,
-	  .applies = has_scene_to_clip,
+	  .applies = gz_window_can_clip,
 	  .run = toggle_handles },
-	{ .help = "show the whole volume again",
+	{ .help = "show again what the clip box cuts off",
 	  .name = "Remove the clip box",
 	  .menu = GZ_MENU_EDIT,
 	  .section = 1,

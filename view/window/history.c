@@ -1,5 +1,5 @@
-/* The part that undoes and redoes: settings, camera, clip box and transfer function, in the order
- * in which they were changed; and that knows what the scene's file has. */
+/* The part that undoes and redoes: settings, camera, what is clipped and transfer function, in the
+ * order in which they were changed; and that knows what the scene's file has. */
 #include <string.h>
 
 #include "base/clock.h"

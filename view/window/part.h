@@ -159,6 +159,7 @@ struct gz_window_part {
 	ROW(overlay)       /* the tint that shows the plan */ \
 	ROW(trail)         /* the last second of the gaze */ \
 	ROW(clip)          /* moves the faces of the clip box; before what takes all drags */ \
+	ROW(clip_plane)    /* moves and tilts the clip plane; behind the clip box's small handles */ \
 	ROW(light)         /* moves the light; before the camera, which takes all other drags */ \
 	ROW(camera)        /* moves the camera */ \
 	ROW(frame_times)   /* plots what frames cost */ \

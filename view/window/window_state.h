@@ -51,6 +51,7 @@ struct gz_window {
 	/* States of the parts: struct gz_window_part's state_size. */
 	struct gz_window_capture *capture;
 	struct gz_window_clip *clip;
+	struct gz_window_clip_plane *clip_plane;
 	struct gz_window_compare *compare;
 	struct gz_window_displays *displays;
 	struct gz_window_effect *effect;
