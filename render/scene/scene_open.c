@@ -212,20 +212,18 @@ static enum gz_result change_and_check(const struct gz_scene_request *request,
 	return result == GZ_OK ? gz_scene_settings_check(settings, request->path, log) : result;
 }
 
+/* In place of a shading: the request has not chosen one. */
+enum { SHADING_OPEN = -1 };
+
 /* Most volumes show surfaces, and those need light; a transfer function that is asked for may not.
- * A change of the shading comes afterwards. */
-static enum gz_result choose_first_shading(const struct gz_scene_request *request,
-					   struct gz_scene_settings *settings)
+ */
+static void choose_first_shading(struct gz_scene_settings *settings)
 {
-	struct gz_scene_settings asked = *settings;
-	const enum gz_result result =
-		request->change ? request->change(request->user, &asked) : GZ_OK;
-	const int preset = asked.transfer_preset;
+	const int preset = settings->transfer_preset;
 	const bool lit =
 		preset == 0 || gz_transfer_preset_text((enum gz_transfer_preset)(preset - 1))->lit;
-	if (result == GZ_OK && lit)
-		settings->rays.shading = GZ_SHADING_GRADIENT;
-	return result;
+	if (settings->rays.shading == SHADING_OPEN)
+		settings->rays.shading = lit ? GZ_SHADING_GRADIENT : GZ_SHADING_NONE;
 }
 
 static enum gz_result open_volume(const struct gz_scene_request *request,
@@ -240,9 +238,12 @@ static enum gz_result open_volume(const struct gz_scene_request *request,
 	if (result != GZ_OK)
 		return result;
 	const struct gz_camera preset = settings.camera;
-	result = choose_first_shading(request, &settings);
+	settings.rays.shading = SHADING_OPEN;
+	if (request->change)
+		result = request->change(request->user, &settings);
+	choose_first_shading(&settings);
 	if (result == GZ_OK)
-		result = change_and_check(request, &settings, log);
+		result = gz_scene_settings_check(&settings, request->path, log);
 	const struct gz_scene_parts parts = {
 		.name = request->path,
 		.settings = &settings,

@@ -34,7 +34,8 @@ struct gz_scene_request {
 	const char *path;
 	/** Layout of a raw file; NULL: found by name and size, if that is certain. */
 	const struct gz_raw_layout *raw;
-	/** As in struct gz_scene_source; NULL: none. */
+	/** As in struct gz_scene_source, called once; NULL: none. Of a volume, render.shading is no
+	 *  value yet, and chosen afterwards if it is left so. */
 	gz_scene_change *change;
 	void *user;
 	const struct gz_loading *loading; /**< as for gz_scene_load() */

@@ -138,6 +138,28 @@ static void shading_and_preset_of_the_request_are_kept(void **state)
 	gz_scene_free(&usual);
 }
 
+static enum gz_result count_and_ask_for_lit_xray(void *user, struct gz_scene_settings *settings)
+{
+	++*(int *)user;
+	settings->rays.shading = GZ_SHADING_GRADIENT;
+	settings->transfer_preset = 1 + GZ_PRESET_XRAY;
+	return GZ_OK;
+}
+
+static void request_changes_a_volume_once(void **state)
+{
+	(void)state;
+	int calls = 0;
+	struct gz_scene scene;
+	const struct gz_scene_request request = { .path = write_nrrd("v.nrrd"),
+						  .change = count_and_ask_for_lit_xray,
+						  .user = &calls };
+	assert_int_equal(gz_scene_open(&request, NULL, &scene), GZ_OK);
+	assert_int_equal(calls, 1);
+	assert_int_equal(scene.settings.rays.shading, GZ_SHADING_GRADIENT);
+	gz_scene_free(&scene);
+}
+
 static enum gz_result take_transfer_of_others(void *user, struct gz_scene_settings *settings)
 {
 	snprintf(settings->transfer_file, sizeof settings->transfer_file, "%s", (const char *)user);
@@ -442,6 +464,7 @@ TEST_SUITE(scene_open)
 		cmocka_unit_test(transfer_function_for_other_data_is_told),
 		cmocka_unit_test(shading_and_preset_of_the_request_are_kept),
 		cmocka_unit_test(preset_that_shows_no_surfaces_is_not_lit),
+		cmocka_unit_test(request_changes_a_volume_once),
 		cmocka_unit_test(mesh_opens_without_a_scene),
 		cmocka_unit_test(particles_open_as_a_volume),
 		cmocka_unit_test(fitted_camera_sees_the_box_in_either_projection),
