@@ -684,6 +684,9 @@ static void list_ways(struct ways *out)
 	add_way(out, "a change costs 20 ms")->costs.change_us = 20000;
 	add_way(out, "pursuit costs 20 ms")->costs.pursuit_us = 20000;
 	add_way(out, "pursuit costs 80 ms")->costs.pursuit_us = 80000;
+	add_way(out, "a saccade's end costs 4 ms")->costs.saccade_us = 4000;
+	add_way(out, "a saccade's end costs 8 ms")->costs.saccade_us = 8000;
+	add_way(out, "a saccade's end costs 32 ms")->costs.saccade_us = 32000;
 	add_way(out, "saccade as it is")->costs.added[GZ_FOREST_SACCADE] = 0;
 	add_way(out, "saccade -0.4")->costs.added[GZ_FOREST_SACCADE] = units(-0.4);
 	add_way(out, "noise 0.3")->costs.added[GZ_FOREST_NOISE] = units(0.3);

@@ -16,7 +16,7 @@ enum { BLOCK = 4096 };
 static const int64_t STEP_MOST_US = 100000;
 
 /* Logarithms of odds: -0.2 for saccades, 0.3 for ringing. */
-const struct gz_whole_costs gz_whole_preset_costs = { 4000, 40000, { 0, -819, 0, 0, 1229 } };
+const struct gz_whole_costs gz_whole_preset_costs = { 4000, 40000, 16000, { 0, -819, 0, 0, 1229 } };
 
 /* Odds of 20 count at most, and those of pursuit are 1.65 times as high. */
 const struct gz_whole_odds gz_whole_preset_odds = { 150000, 12288, 2048, 0.5 };
@@ -302,9 +302,13 @@ static int64_t cost_of(const struct gz_whole_costs *costs, int from, int to)
 	const int64_t unit = (int64_t)(1 / GZ_FOREST_UNIT);
 	if (from == to)
 		return 0;
-	bool slow = (from == GZ_FOREST_FIXATION && to == GZ_FOREST_PURSUIT) ||
-		    (from == GZ_FOREST_PURSUIT && to == GZ_FOREST_FIXATION);
-	return unit * (slow ? costs->pursuit_us : costs->change_us);
+	const bool from_slow = from == GZ_FOREST_FIXATION || from == GZ_FOREST_PURSUIT;
+	const bool to_slow = to == GZ_FOREST_FIXATION || to == GZ_FOREST_PURSUIT;
+	const bool saccade = (from == GZ_FOREST_SACCADE && (to_slow || to == GZ_FOREST_NOISE)) ||
+			     (from == GZ_FOREST_NOISE && to == GZ_FOREST_SACCADE);
+	return unit * (from_slow && to_slow ? costs->pursuit_us
+		       : saccade            ? costs->saccade_us
+					    : costs->change_us);
 }
 
 /* Find the best way to each class. @param apart  something is missing before this sample */

@@ -48,8 +48,10 @@ void gz_whole_score(const float features[GZ_WHOLE_FEATURES], int32_t out_scores[
 /** Costs of a sequence of labels, as times: a change costs as much as a label that is e times less
  *  likely over this time. */
 struct gz_whole_costs {
-	int64_t change_us;                /**< any change of the label */
-	int64_t pursuit_us;               /**< a change between fixation and pursuit */
+	int64_t change_us;  /**< any change of the label */
+	int64_t pursuit_us; /**< a change between fixation and pursuit */
+	int64_t saccade_us; /**< a saccade that ends without ringing, or that begins or
+			       ends in noise, as the flanks of a blink look */
 	int32_t added[GZ_FOREST_CLASSES]; /**< is added to the scores of the classes, GZ_FOREST_UNIT
 					   */
 };
