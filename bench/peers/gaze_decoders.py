@@ -2,10 +2,12 @@
 """Other ways to make labels from the scores of a forest, on recordings that were kept out
 (docs/gaze-pipeline.md). None of them is used: this shows what they would reach.
 
-    nice /usr/bin/python3 bench/peers/gaze_decoders.py FOLDER TAG {at_once,certain,whole} {film,set}
+    nice /usr/bin/python3 bench/peers/gaze_decoders.py FOLDER TAG {at_once,certain,whole} {film,set,order}
 
 FOLDER is that of gaze_features, with the TAG.scores that gaze_forest_fit left for these folds. Rates
-and durations of labels are learned from the recordings of the other folds. Needs numpy.
+and durations of labels are learned from the recordings of the other folds. `order` prints instead in
+how many pairs of a pursuit and a fixation sample of one recording the pursuit has the greater odds.
+Needs numpy.
 """
 import argparse
 import os
@@ -27,6 +29,7 @@ class Recording:
 
     def __init__(self, track, fold, scores, labels, measured):
         self.kind, self.step_ms, self.fold = track[2], float(track[4]) / 1000, fold
+        self.name = track[3]
         self.scores, self.labels, self.measured = scores, labels, measured
         self.found = None
 
@@ -298,15 +301,31 @@ def ways_of(kind, recordings):
                lambda prior_s=prior_s, memory_s=memory_s: online_share(recordings, prior_s, memory_s))
 
 
+def print_order(recordings):
+    """Print the share of pairs in order, of each recording of Andersson et al. and each coder."""
+    for one in recordings:
+        for labels in one.labels if one.kind in STIMULI else []:
+            slow = one.measured & ((labels == FIXATION) | (labels == PURSUIT))
+            pursuit = (labels == PURSUIT)[slow]
+            many, few = pursuit.sum(), (~pursuit).sum()
+            if many and few:
+                rank = np.argsort(np.argsort(odds_of(one.scores[slow]))) + 1
+                share = (rank[pursuit].sum() - many * (many + 1) / 2) / (many * few)
+                print(f"{one.name}: {share:.2f}")
+
+
 def main():
     """Print a row for each way."""
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("tag")
     parser.add_argument("kind", choices=sorted(ADDED))
-    parser.add_argument("folds", choices=("film", "set"))
+    parser.add_argument("folds", choices=("film", "set", "order"))
     options = parser.parse_args()
     recordings = read(options.folder, options.tag, options.kind, options.folds)
+    if options.folds == "order":
+        print_order(recordings)
+        return 0
     for name, run in ways_of(options.kind, recordings):
         run()
         for one in recordings:

@@ -4,11 +4,14 @@ forests of filter/classifier (docs/gaze-pipeline.md).
 
     GAZECAST_DATA=... nice /usr/bin/python3 bench/peers/gaze_trees.py FOLDS [--ahead SAMPLES] [--every 3]
 
+    GAZECAST_DATA=... /usr/bin/python3 bench/peers/gaze_trees.py speeds
+
 FOLDS is `film` (two films and a third of the people at a time), `set` or `recording`, as folds=3,
 folds=2 and `folds=3 recordings=1` of gaze_forest_fit. 64 features at 250 Hz, of the samples before a
 sample and, with --ahead, of so many after it: noise, and over eight windows of 4 to 448 ms the
 distance, the way, both against noise and each other, the spread and what was lost; turns; what was
-fast, and when. 120 rounds of 24 leaves learn from every third sample, and from each of both coders.
+fast, and when. 120 rounds of 24 leaves learn from every third sample, and from each of both coders. `speeds` prints how fast the
+eye moves in what people call fixation and pursuit: medians over 100 ms, of each recording.
 Needs numpy and scikit-learn (python3-sklearn).
 """
 import argparse
@@ -214,10 +217,23 @@ def print_figures(recordings):
     print("| " + " | ".join(cells) + " |")
 
 
+def print_speeds(recordings):
+    """Print the median speeds of each recording's first half of the samples, by its first coder."""
+    for name in dict.fromkeys(one.name for one in recordings):
+        one = next(one for one in recordings if one.name == name)
+        speeds = np.hypot(*(one.points_deg[25:] - one.points_deg[:-25]).T) / 0.1
+        labels = one.labels[0]
+        same = np.lib.stride_tricks.sliding_window_view(labels, 26)
+        same = (same == same[:, :1]).all(1)
+        medians = [np.nanmedian(speeds[same & (labels[:-25] == k)])
+                   if (same & (labels[:-25] == k)).any() else np.nan for k in (FIXATION, PURSUIT)]
+        print(f"{name[:30]:30} fixation {medians[0]:.1f}, pursuit {medians[1]:.1f} degrees per second")
+
+
 def main():
     """Keep out each fold once."""
     parser = argparse.ArgumentParser()
-    parser.add_argument("folds", choices=("film", "set", "recording"))
+    parser.add_argument("folds", choices=("film", "set", "recording", "speeds"))
     parser.add_argument("--ahead", type=int, default=0)
     parser.add_argument("--every", type=int, default=3)
     options = parser.parse_args()
@@ -226,6 +242,9 @@ def main():
         return 77
     data = os.path.join(os.environ["GAZECAST_DATA"], "gaze")
     recordings = list(read_stimuli(os.path.join(data, "andersson2017")))
+    if options.folds == "speeds":
+        print_speeds(recordings)
+        return 0
     recordings += read_films(os.path.join(data, "gazecom"))
     rows = [features_of(one, options.ahead) for one in recordings]
     for fold in range(set_folds(recordings, options.folds)):
