@@ -2,14 +2,17 @@
  * again from files, and frames with every weight above 0 ("all buffers"):
  *
  *     illustration_speed SCENE [--isovalue N] [--size 1920x1080] [--runs 25] [--threads 0]
+ *                        [--kinds 4]
  *
- * The kinds of frames are drawn in turn, so on a busy machine their ratios can still be told. The
- * gaze is in the middle, and the camera turns by 0.01 degrees a frame. */
+ * The kinds of frames are drawn in turn, so on a busy machine their ratios can still be told.
+ * Processor time is that of all threads: it hardly depends on what else runs. The gaze is in the
+ * middle, and the camera turns by 0.01 degrees a frame. */
 #include <ftw.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -26,7 +29,7 @@ enum { RUNS_MAX = 1000 };
 
 /* The command line. */
 struct speed_request {
-	int size[2], runs, threads;
+	int size[2], runs, threads, kinds;
 	double isovalue;
 };
 
@@ -38,6 +41,8 @@ static const struct gz_option speed_options[] = {
 	{ "runs", GZ_OPTION_INT, AT(runs), 1, RUNS_MAX, .preset = "25", .help = "frames" },
 	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
 	  .help = "0: one for each processor" },
+	{ "kinds", GZ_OPTION_INT, AT(kinds), 1, 4, .preset = "4",
+	  .help = "of frames, the first ones: grey, stipples, hatches, grey with every pixel" },
 	{ "isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -1e30, 1e30, .preset = "-1e30",
 	  .help = "of volumes, in place of the scene's" },
 };
@@ -72,7 +77,7 @@ struct speed_stage {
 
 /* What one kind of frames took. */
 struct speed_times {
-	double total_ms[RUNS_MAX], cast_ms[RUNS_MAX];
+	double total_ms[RUNS_MAX], cast_ms[RUNS_MAX], processor_ms[RUNS_MAX];
 };
 
 /* All parameters, each with some weight. */
@@ -143,11 +148,11 @@ static enum gz_result open_caster(const struct speed_request *request, struct sp
 }
 
 /* Draw one picture of each kind, and print what was prepared for it. */
-static enum gz_result prepare_kinds(struct speed_stage *stage, struct gz_illustrate_caster *caster,
-				    const char *how)
+static enum gz_result prepare_kinds(const struct speed_request *request, struct speed_stage *stage,
+				    struct gz_illustrate_caster *caster, const char *how)
 {
 	enum gz_result result = GZ_OK;
-	for (int kind = 0; kind < KINDS - 1 && result == GZ_OK; kind++) {
+	for (int kind = 0; kind < KINDS - 1 && kind < request->kinds && result == GZ_OK; kind++) {
 		struct gz_frame_stats stats;
 		result = draw_kind(stage, caster, kind, &stats);
 		if (result == GZ_OK)
@@ -171,20 +176,31 @@ static void turn_camera(struct gz_camera *camera)
 static void print_times(const struct speed_request *request, struct speed_times *times)
 {
 	double grey_ms = 0;
-	printf("%-20s %10s %10s %10s %10s %10s\n", "frames", "best_ms", "median_ms", "per_s",
-	       "cast_ms", "of grey");
-	for (int kind = 0; kind < KINDS; kind++) {
+	printf("%-20s %10s %10s %10s %10s %13s %10s\n", "frames", "best_ms", "median_ms", "per_s",
+	       "cast_ms", "processor_ms", "of grey");
+	for (int kind = 0; kind < request->kinds; kind++) {
 		const size_t middle = (size_t)request->runs / 2;
 		qsort(times[kind].total_ms, (size_t)request->runs, sizeof(double),
 		      gz_compare_doubles);
 		qsort(times[kind].cast_ms, (size_t)request->runs, sizeof(double),
 		      gz_compare_doubles);
+		qsort(times[kind].processor_ms, (size_t)request->runs, sizeof(double),
+		      gz_compare_doubles);
 		const double median_ms = times[kind].total_ms[middle];
 		grey_ms = kind == 0 ? median_ms : grey_ms;
-		printf("%-20s %10.2f %10.2f %10.1f %10.2f %10.2f\n", kinds[kind].name,
+		printf("%-20s %10.2f %10.2f %10.1f %10.2f %13.2f %10.2f\n", kinds[kind].name,
 		       times[kind].total_ms[0], median_ms, 1000 / median_ms,
-		       times[kind].cast_ms[middle], median_ms / grey_ms);
+		       times[kind].cast_ms[middle], times[kind].processor_ms[middle],
+		       median_ms / grey_ms);
 	}
+}
+
+/* What all threads of the process have computed so far. */
+static double processor_now_ms(void)
+{
+	struct timespec now;
+	(void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+	return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
 }
 
 static enum gz_result draw_frames(const struct speed_request *request, struct speed_stage *stage,
@@ -194,11 +210,13 @@ static enum gz_result draw_frames(const struct speed_request *request, struct sp
 	enum gz_result result = GZ_OK;
 	for (int run = 0; run < request->runs && result == GZ_OK; run++) {
 		turn_camera(&stage->camera);
-		for (int kind = 0; kind < KINDS && result == GZ_OK; kind++) {
+		for (int kind = 0; kind < request->kinds && result == GZ_OK; kind++) {
 			struct gz_frame_stats stats = { 0 };
+			const double processor_ms = processor_now_ms();
 			const int64_t start_ns = gz_clock_now_ns();
 			result = draw_kind(stage, caster, kind, &stats);
 			times[kind].total_ms[run] = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+			times[kind].processor_ms[run] = processor_now_ms() - processor_ms;
 			times[kind].cast_ms[run] = stats.cast_ms;
 		}
 	}
@@ -225,12 +243,12 @@ static enum gz_result measure_stage(const struct speed_request *request, struct 
 		return GZ_ERR_IO;
 	enum gz_result result = open_caster(request, stage, log, &caster);
 	if (result == GZ_OK)
-		result = prepare_kinds(stage, caster, "anew");
+		result = prepare_kinds(request, stage, caster, "anew");
 	gz_illustrate_caster_destroy(&caster);
 	if (result == GZ_OK)
 		result = open_caster(request, stage, log, &caster);
 	if (result == GZ_OK)
-		result = prepare_kinds(stage, caster, "from files");
+		result = prepare_kinds(request, stage, caster, "from files");
 	if (result == GZ_OK)
 		printf("%s, %llu rays foveated, %llu triangles\n",
 		       gz_illustrate_caster_describe(caster),
