@@ -77,58 +77,86 @@ static void store_point(const struct gz_lattice *lattice, int column, int row, u
 		lattice->points[(size_t)row * lattice->stride + (size_t)column] = pixel;
 }
 
+/* Points of a tile, ray by ray. */
+typedef uint32_t tile_points[GZ_TILE_EDGE * GZ_TILE_EDGE];
+
 /* Store a tile that lies wholly on its lattice and begins at (column, row). */
 static void store_whole(const struct gz_lattice *lattice, int pattern, int column, int row,
-			const uint32_t *pixels)
+			const tile_points points)
 {
 	uint32_t *to = lattice->points + (size_t)row * lattice->stride + (size_t)column;
 	const uint8_t *columns = gz_tile_columns[pattern];
 	for (int y = 0; y < GZ_TILE_EDGE; y++, to += lattice->stride) {
 		if (pattern == GZ_TILE_SQUARE)
-			memcpy(to, pixels + GZ_TILE_EDGE * y, GZ_TILE_EDGE * sizeof *to);
+			memcpy(to, points + GZ_TILE_EDGE * y, GZ_TILE_EDGE * sizeof *to);
 		for (int x = 0; pattern != GZ_TILE_SQUARE && x < GZ_TILE_EDGE; x++)
-			to[columns[GZ_TILE_EDGE * y + x]] = pixels[GZ_TILE_EDGE * y + x];
+			to[columns[GZ_TILE_EDGE * y + x]] = points[GZ_TILE_EDGE * y + x];
 	}
 }
 
+/* The rays in even columns and rows of their tile, which coarser lattices have too. */
+static const struct {
+	uint8_t count, rays[8];
+} even_rays[GZ_TILE_PATTERN_COUNT] = {
+	[GZ_TILE_SQUARE] = { 4, { 0, 2, 8, 10 } },
+	[GZ_TILE_QUINCUNX] = { 8, { 0, 1, 2, 3, 8, 9, 10, 11 } },
+};
+
 /* Store the points of a tile that coarser lattices of the pyramid have too. Each coarser lattice
- * has at most every second point of the finer one along x and y. */
-static void store_coarser(const struct gz_lattices *lattices, const struct gz_tile *tile, int last,
-			  int column, int row, const uint32_t *pixels)
+ * has every second point of the finer one along x and y. */
+static void store_coarser(const struct gz_lattices planes[], int count, const struct gz_tile *tile,
+			  int last, int column, int row, const tile_points points[])
 {
-	const uint8_t *columns = gz_tile_columns[tile->pattern];
-	const int spacing = lattices->layers[tile->layer].spacing;
-	for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++) {
-		const int x = column + columns[i], y = row + gz_tile_rows[i];
-		if ((x | y) & 1)
-			continue;
+	for (int k = 0; k < even_rays[tile->pattern].count; k++) {
+		const int ray = even_rays[tile->pattern].rays[k];
+		const int x = column + gz_tile_columns[tile->pattern][ray];
+		const int y = row + gz_tile_rows[ray];
 		for (int layer = tile->layer + 1; layer <= last; layer++) {
-			const struct gz_lattice *lattice = &lattices->layers[layer];
-			const int shift = __builtin_ctz((unsigned)lattice->spacing) -
-					  __builtin_ctz((unsigned)spacing);
+			const int shift = layer - tile->layer;
 			if ((x | y) & ((1 << shift) - 1))
 				break;
-			store_point(lattice, x >> shift, y >> shift, pixels[i]);
+			for (int plane = 0; plane < count; plane++)
+				store_point(&planes[plane].layers[layer], x >> shift, y >> shift,
+					    points[plane][ray]);
 		}
 	}
+}
+
+/* Store a tile that begins at (column, row) of its lattice, which it may leave. */
+static void store_tile(const struct gz_lattice *lattice, const struct gz_tile *tile,
+		       uint32_t active, int column, int row, const tile_points points)
+{
+	if (active == 0xFFFF) {
+		store_whole(lattice, tile->pattern, column, row, points);
+		return;
+	}
+	for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++)
+		store_point(lattice, column + gz_tile_columns[tile->pattern][i],
+			    row + gz_tile_rows[i], points[i]);
+}
+
+void gz_lattices_store_planes(struct gz_lattices planes[], int count, const struct gz_plan *plan,
+			      const struct gz_tile *tile, uint32_t active,
+			      const uint32_t points[][GZ_TILE_EDGE * GZ_TILE_EDGE])
+{
+	const int spacing = plan->layers[tile->layer].spacing;
+	const int column = tile->x / spacing, row = tile->y / spacing;
+	for (int plane = 0; plane < count; plane++) {
+		store_tile(&planes[plane].layers[tile->layer], tile, active, column, row,
+			   points[plane]);
+		if (plan->reconstruction == GZ_RECONSTRUCT_PYRAMID)
+			gz_lattices_mark(&planes[plane], tile);
+	}
+	if (plan->reconstruction == GZ_RECONSTRUCT_PYRAMID)
+		store_coarser(planes, count, tile, plan->layer_count - 1, column, row, points);
 }
 
 void gz_lattices_store(struct gz_lattices *lattices, const struct gz_plan *plan,
 		       const struct gz_tile *tile, uint32_t active,
 		       const uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE])
 {
-	const struct gz_lattice *lattice = &lattices->layers[tile->layer];
-	const uint8_t *columns = gz_tile_columns[tile->pattern];
-	const int column = tile->x / lattice->spacing, row = tile->y / lattice->spacing;
-	if (active == 0xFFFF)
-		store_whole(lattice, tile->pattern, column, row, pixels);
-	else
-		for (int i = 0; i < GZ_TILE_EDGE * GZ_TILE_EDGE; i++)
-			store_point(lattice, column + columns[i], row + gz_tile_rows[i], pixels[i]);
-	if (plan->reconstruction != GZ_RECONSTRUCT_PYRAMID)
-		return;
-	gz_lattices_mark(lattices, tile);
-	store_coarser(lattices, tile, plan->layer_count - 1, column, row, pixels);
+	gz_lattices_store_planes(lattices, 1, plan, tile, active,
+				 (const uint32_t(*)[GZ_TILE_EDGE * GZ_TILE_EDGE]) pixels);
 }
 
 enum gz_result gz_lattices_prepare(struct gz_lattices *lattices, const struct gz_plan *plan,

@@ -61,6 +61,12 @@ void gz_lattices_store(struct gz_lattices *lattices, const struct gz_plan *plan,
 		       const struct gz_tile *tile, uint32_t active,
 		       const uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE]);
 
+/** gz_lattices_store() of several planes at once, which is faster.
+ *  @param planes  prepared with the same plan @param points  by plane and ray */
+void gz_lattices_store_planes(struct gz_lattices planes[], int count, const struct gz_plan *plan,
+			      const struct gz_tile *tile, uint32_t active,
+			      const uint32_t points[][GZ_TILE_EDGE * GZ_TILE_EDGE]);
+
 /** What gz_lattices_mark() noted of block (@p column, @p row): 2 * layer + pattern. */
 static inline int gz_lattices_block(const struct gz_lattices *lattices, int column, int row)
 {

@@ -1,6 +1,6 @@
 /*
  * The row filters (struct gz_row_filters) of planes other than colours, point by point.
- * plane_filters.c includes this once for each kind of plane, after it defines:
+ * plane_loops.h includes this once for each kind of plane, after it defines:
  *
  *   POINT                        the C type of a point, 32 bits
  *   PLANE(name)                  the name of a function of this kind

@@ -73,6 +73,19 @@ extern const struct gz_row_filters gz_row_filters_avx512;
  *  ones if there are none of that name. Static. */
 const struct gz_row_filters *gz_row_filters_find(const char *name);
 
+/** The filters of planes other than colours for one instruction set. Those of @p values and
+ *  @p ids that are the same for all planes are NULL. All sets give the same bits. */
+struct gz_plane_filters {
+	const char *name; /**< as in struct gz_row_filters */
+	const struct gz_row_filters *values, *ids;
+};
+
+extern const struct gz_plane_filters gz_plane_filters_portable;
+#ifdef GZ_CAST_X86
+extern const struct gz_plane_filters gz_plane_filters_avx2;
+extern const struct gz_plane_filters gz_plane_filters_avx512;
+#endif
+
 /** The filters of a kind of plane, for the instruction set of the filters @p colours. */
 struct gz_row_filters gz_row_filters_of_plane(enum gz_plane_kind kind,
 					      const struct gz_row_filters *colours);

@@ -1,0 +1,5 @@
+/* The filters of planes for one instruction set: plane_loops.h. */
+#include "render/reconstruct/cpu/plane_loops.h"
+
+const struct gz_plane_filters gz_plane_filters_portable = { "portable", &value_filters,
+							    &id_filters };
