@@ -1,7 +1,6 @@
 #include "render/illustration/depth_blur.h"
 
 #include <math.h>
-#include <stddef.h>
 
 #include "render/illustration/plane_kernels.h"
 
@@ -50,12 +49,7 @@ void gz_depth_halve(const float *upper, const float *lower, int width, float *ou
 void gz_depth_enlarge(const float *cells, int width, int height, int level, int x, int y,
 		      float *out_pixels)
 {
-	const float at = ((float)y + 0.5F) / (float)(1 << level) - 0.5F;
-	const int above = (int)floorf(at), below = above + 1;
-	const int first = above > 0 ? above : 0, last = below < height ? below : height - 1;
-	gz_plane_kernels_find()->enlarge_row(cells + (ptrdiff_t)first * width,
-					     cells + (ptrdiff_t)last * width, at - (float)above,
-					     width, level, x, out_pixels);
+	gz_plane_kernels_find()->enlarge_cells(cells, width, height, level, x, y, out_pixels);
 }
 
 void gz_blur_along_rows(const struct gz_gaussian *gaussian, const struct gz_plane_band *band,

@@ -5,16 +5,20 @@
 #ifndef GZ_RENDER_ILLUSTRATION_DEPTH_BLUR_LOOPS_H
 #define GZ_RENDER_ILLUSTRATION_DEPTH_BLUR_LOOPS_H
 
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
 #include "render/illustration/depth_blur.h"
 
-/* Columns that are summed up at once. Chosen: they stay in the first-level cache. */
-enum { BLUR_COLUMNS = 64 };
+/* Columns that are summed up at once, in vectors of BLUR_LANES. Chosen: the sums stay in registers.
+ */
+enum { BLUR_COLUMNS = 64, BLUR_LANES = 16, BLUR_VECTORS = BLUR_COLUMNS / BLUR_LANES };
+
+typedef float blur_lanes __attribute__((vector_size(BLUR_LANES * sizeof(float))));
 
 /* An index of a plane whose border repeats. */
-static int clamp_index(int index, int count)
+static inline int clamp_index(int index, int count)
 {
 	if (index < 0)
 		return 0;
@@ -22,31 +26,40 @@ static int clamp_index(int index, int count)
 }
 
 /* Add both rows at equal distance, times their weight. */
-static void add_row_pair(float *restrict sums, const float *before, const float *after,
-			 float weight, int count)
+static inline void add_row_pair(blur_lanes sums[BLUR_VECTORS], const float *before,
+				const float *after, float weight)
 {
-	for (int i = 0; i < count; i++)
-		sums[i] += weight * (before[i] + after[i]);
-}
-
-/* Columns from begin to before end, all at least a radius from both borders. */
-static void blur_inner_columns(const struct gz_gaussian *gaussian, const float *in, float *out,
-			       int begin, int end)
-{
-	for (int x = begin; x < end; x += BLUR_COLUMNS) {
-		const int count = end - x < BLUR_COLUMNS ? end - x : BLUR_COLUMNS;
-		float sums[BLUR_COLUMNS] = { 0 };
-		for (int i = 0; i < count; i++)
-			sums[i] = gaussian->weights[0] * in[x + i];
-		for (int k = 1; k <= gaussian->radius; k++)
-			add_row_pair(sums, in + x - k, in + x + k, gaussian->weights[k], count);
-		memcpy(out + x, sums, (size_t)count * sizeof *sums);
+	for (int i = 0; i < BLUR_VECTORS; i++) {
+		blur_lanes a, b;
+		memcpy(&a, before + (ptrdiff_t)i * BLUR_LANES, sizeof a);
+		memcpy(&b, after + (ptrdiff_t)i * BLUR_LANES, sizeof b);
+		sums[i] += weight * (a + b);
 	}
 }
 
+/* Begin sums with the row itself. */
+static inline void begin_sums(blur_lanes sums[BLUR_VECTORS], const float *row, float weight)
+{
+	for (int i = 0; i < BLUR_VECTORS; i++) {
+		memcpy(&sums[i], row + (ptrdiff_t)i * BLUR_LANES, sizeof sums[i]);
+		sums[i] *= weight;
+	}
+}
+
+/* BLUR_COLUMNS columns, all at least a radius from both borders. */
+static inline void blur_whole_columns(const struct gz_gaussian *gaussian, const float *in,
+				      float *out)
+{
+	blur_lanes sums[BLUR_VECTORS];
+	begin_sums(sums, in, gaussian->weights[0]);
+	for (int k = 1; k <= gaussian->radius; k++)
+		add_row_pair(sums, in - k, in + k, gaussian->weights[k]);
+	memcpy(out, sums, sizeof sums);
+}
+
 /* Columns that are nearer to a border. */
-static void blur_border_columns(const struct gz_gaussian *gaussian, const float *in, float *out,
-				int begin, int end, int width)
+static inline void blur_border_columns(const struct gz_gaussian *gaussian, const float *in,
+				       float *out, int begin, int end, int width)
 {
 	for (int x = begin; x < end; x++) {
 		float sum = gaussian->weights[0] * in[x];
@@ -54,6 +67,21 @@ static void blur_border_columns(const struct gz_gaussian *gaussian, const float 
 			sum += gaussian->weights[k] *
 			       (in[clamp_index(x - k, width)] + in[clamp_index(x + k, width)]);
 		out[x] = sum;
+	}
+}
+
+/* Columns from begin to before end, all at least a radius from both borders. The last block begins
+ * earlier where it would end later: it makes some columns again, alike. */
+static inline void blur_inner_columns(const struct gz_gaussian *gaussian, const float *in,
+				      float *out, int begin, int end, int width)
+{
+	if (end - begin < BLUR_COLUMNS) {
+		blur_border_columns(gaussian, in, out, begin, end, width);
+		return;
+	}
+	for (int x = begin; x < end; x += BLUR_COLUMNS) {
+		const int from = x + BLUR_COLUMNS <= end ? x : end - BLUR_COLUMNS;
+		blur_whole_columns(gaussian, in + from, out + from);
 	}
 }
 
@@ -68,39 +96,57 @@ static void blur_rows(const struct gz_gaussian *gaussian, const struct gz_plane_
 		const float *from = in + (ptrdiff_t)y * width;
 		float *to = out + (ptrdiff_t)y * width;
 		blur_border_columns(gaussian, from, to, 0, left, width);
-		blur_inner_columns(gaussian, from, to, left, right);
+		blur_inner_columns(gaussian, from, to, left, right, width);
 		blur_border_columns(gaussian, from, to, right, width, width);
 	}
 }
 
-/* Some columns of one row. */
-static void blur_column_span(const struct gz_gaussian *gaussian, const struct gz_plane_band *band,
-			     const float *in, float *out, int y, int x)
+/* BLUR_COLUMNS columns of one row from column @p x on. */
+static inline void blur_column_block(const struct gz_gaussian *gaussian,
+				     const struct gz_plane_band *band, const float *in, float *out,
+				     int y, int x)
 {
-	const int count = band->width - x < BLUR_COLUMNS ? band->width - x : BLUR_COLUMNS;
 	const ptrdiff_t width = band->width;
-	float sums[BLUR_COLUMNS] = { 0 };
-	for (int i = 0; i < count; i++)
-		sums[i] = gaussian->weights[0] * in[y * width + x + i];
+	blur_lanes sums[BLUR_VECTORS];
+	begin_sums(sums, in + y * width + x, gaussian->weights[0]);
 	for (int k = 1; k <= gaussian->radius; k++)
 		add_row_pair(sums, in + clamp_index(y - k, band->height) * width + x,
 			     in + clamp_index(y + k, band->height) * width + x,
-			     gaussian->weights[k], count);
-	memcpy(out + y * width + x, sums, (size_t)count * sizeof *sums);
+			     gaussian->weights[k]);
+	memcpy(out + y * width + x, sums, sizeof sums);
 }
 
-/* gz_blur_along_columns() */
+/* Fewer columns of one row. */
+static inline void blur_column_rest(const struct gz_gaussian *gaussian,
+				    const struct gz_plane_band *band, const float *in, float *out,
+				    int y)
+{
+	const ptrdiff_t width = band->width;
+	for (int x = 0; x < band->width; x++) {
+		float sum = gaussian->weights[0] * in[y * width + x];
+		for (int k = 1; k <= gaussian->radius; k++)
+			sum += gaussian->weights[k] *
+			       (in[clamp_index(y - k, band->height) * width + x] +
+				in[clamp_index(y + k, band->height) * width + x]);
+		out[y * width + x] = sum;
+	}
+}
+
+/* gz_blur_along_columns(). The last block may make some columns again, alike. */
 static void blur_columns(const struct gz_gaussian *gaussian, const struct gz_plane_band *band,
 			 const float *in, float *out)
 {
-	for (int x = 0; x < band->width; x += BLUR_COLUMNS)
+	const int last = band->width - BLUR_COLUMNS;
+	for (int y = band->first; y < band->end && last < 0; y++)
+		blur_column_rest(gaussian, band, in, out, y);
+	for (int x = 0; x < band->width && last >= 0; x += BLUR_COLUMNS)
 		for (int y = band->first; y < band->end; y++)
-			blur_column_span(gaussian, band, in, out, y, x);
+			blur_column_block(gaussian, band, in, out, y, x < last ? x : last);
 }
 
 /* gz_depth_share() */
-static void share_depth(const void *depth, const uint32_t *ids, int count,
-			const struct gz_depth_range *range, float *restrict out_shares)
+static inline void share_depth(const void *depth, const uint32_t *ids, int count,
+			       const struct gz_depth_range *range, float *restrict out_shares)
 {
 	const char *bytes = depth;
 	const float near = range->near, scale = 1 / (range->far - range->near);
@@ -140,7 +186,7 @@ static inline void enlarge_by(const float *restrict cells, int factor, float *re
 }
 
 /* Enlarges cells of a level; before the first and after the last one there is another. */
-static void enlarge_level(const float *cells, int level, float *out_pixels)
+static inline void enlarge_level(const float *cells, int level, float *out_pixels)
 {
 	switch (level) {
 	case 1:
@@ -164,9 +210,9 @@ static void enlarge_level(const float *cells, int level, float *out_pixels)
 	}
 }
 
-/* gz_depth_enlarge(), between two rows of cells. */
-static void enlarge_row(const float *above, const float *below, float share, int width, int level,
-			int x, float *out_pixels)
+/* Enlarges cells between two rows of them. */
+static inline void enlarge_row(const float *above, const float *below, float share, int width,
+			       int level, int x, float *out_pixels)
 {
 	float cells[GZ_BLUR_COLUMNS + 2];
 	const int first = (x >> level) - 1, count = (GZ_BLUR_COLUMNS >> level) + 2;
@@ -179,6 +225,17 @@ static void enlarge_row(const float *above, const float *below, float share, int
 			cells[i] = above[cell] + share * (below[cell] - above[cell]);
 		}
 	enlarge_level(cells, level, out_pixels);
+}
+
+/* gz_depth_enlarge() */
+static void enlarge_cells(const float *cells, int width, int height, int level, int x, int y,
+			  float *out_pixels)
+{
+	const float at = ((float)y + 0.5F) / (float)(1 << level) - 0.5F;
+	const int above = (int)floorf(at), below = above + 1;
+	const int first = above > 0 ? above : 0, last = below < height ? below : height - 1;
+	enlarge_row(cells + (ptrdiff_t)first * width, cells + (ptrdiff_t)last * width,
+		    at - (float)above, width, level, x, out_pixels);
 }
 
 #endif

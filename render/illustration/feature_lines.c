@@ -2,8 +2,8 @@
 
 #include "render/illustration/plane_kernels.h"
 
-void gz_feature_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
+bool gz_feature_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
 		      float threshold, float *out_lines)
 {
-	gz_plane_kernels_find()->find_lines(window, rows, filter, threshold, out_lines);
+	return gz_plane_kernels_find()->find_lines(window, rows, filter, threshold, out_lines);
 }

@@ -7,6 +7,7 @@
 #ifndef GZ_RENDER_ILLUSTRATION_FEATURE_LINES_H
 #define GZ_RENDER_ILLUSTRATION_FEATURE_LINES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /** The filters of eq. 4.1, by their number of neighbours. The first two draw lines a pixel wide,
@@ -54,8 +55,9 @@ struct gz_line_window {
  * @param threshold       depth by which the neighbours' mean is farther, above 0
  * @param[out] out_lines  @p rows rows of GZ_LINE_COLUMNS: GZ_LINE_NONE, GZ_LINE_INNER and
  *                        GZ_LINE_SILHOUETTE
+ * @return false: there are none
  */
-void gz_feature_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
+bool gz_feature_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
 		      float threshold, float *out_lines);
 
 #endif

@@ -83,14 +83,17 @@ static struct window_look look_at_window(const struct gz_line_window *window, in
 	return (struct window_look) { others == 0, farthest[0] - nearest[0] < 0.999F * threshold };
 }
 
+/* Pixels that are filtered at once: sums of them stay in registers. */
+enum { LINE_BLOCK = 16 };
+
 /* Add what one neighbour of each pixel contributes to the filter of ids, in halves: 1 farther, -1
  * nearer. Choices that are not nested become SIMD. */
-static void add_id_neighbour(const uint32_t *own, const float *own_depth, ptrdiff_t offset,
-			     int32_t *restrict halves)
+static inline void add_id_neighbour(const uint32_t *own, const float *own_depth, ptrdiff_t offset,
+				    int32_t *restrict halves)
 {
 	const uint32_t *ids = own + offset;
 	const float *depth = own_depth + offset;
-	for (int i = 0; i < GZ_LINE_COLUMNS; i++) {
+	for (int i = 0; i < LINE_BLOCK; i++) {
 		const int32_t farther = depth[i] > own_depth[i] ? 1 : 0;
 		const int32_t alike = depth[i] == own_depth[i] ? 1 : 0;
 		const int32_t later = ids[i] > own[i] ? 1 : 0;
@@ -99,29 +102,23 @@ static void add_id_neighbour(const uint32_t *own, const float *own_depth, ptrdif
 	}
 }
 
-/* Add the depth of one neighbour of each pixel. */
-static void add_depth_neighbour(const float *depth, float *restrict sums)
+/* Filter some pixels of a row of a window. */
+static inline void filter_block(const uint32_t *own, const float *own_depth,
+				const struct line_stencil *stencil, bool one_object,
+				float threshold, float *restrict out_lines)
 {
-	for (int i = 0; i < GZ_LINE_COLUMNS; i++)
-		sums[i] += depth[i];
-}
-
-/* Filter a row of a window. */
-static void filter_lines(const uint32_t *own, const float *own_depth,
-			 const struct line_stencil *stencil, bool one_object, float threshold,
-			 float *restrict out_lines)
-{
-	int32_t id_halves[GZ_LINE_COLUMNS] = { 0 };
-	float depth_sums[GZ_LINE_COLUMNS] = { 0 };
+	int32_t id_halves[LINE_BLOCK] = { 0 };
+	float depth_sums[LINE_BLOCK] = { 0 };
 	const float neighbours = (float)stencil->count;
 	for (int k = 0; k < stencil->count; k++) {
 		const ptrdiff_t offset =
 			stencil->offsets[k][1] * WINDOW_COLUMNS + stencil->offsets[k][0];
-		add_depth_neighbour(own_depth + offset, depth_sums);
+		for (int i = 0; i < LINE_BLOCK; i++)
+			depth_sums[i] += own_depth[offset + i];
 		if (!one_object)
 			add_id_neighbour(own, own_depth, offset, id_halves);
 	}
-	for (int i = 0; i < GZ_LINE_COLUMNS; i++) {
+	for (int i = 0; i < LINE_BLOCK; i++) {
 		const float beyond = depth_sums[i] - neighbours * (own_depth[i] + threshold);
 		const float inner = beyond > 0 ? GZ_LINE_INNER : GZ_LINE_NONE;
 		const float line = id_halves[i] > 0 ? GZ_LINE_SILHOUETTE : inner;
@@ -129,20 +126,31 @@ static void filter_lines(const uint32_t *own, const float *own_depth,
 	}
 }
 
+/* Filter a row of a window. */
+static inline void filter_lines(const struct gz_line_window *window, int row,
+				const struct line_stencil *stencil, bool one_object,
+				float threshold, float *out_lines)
+{
+	for (int i = 0; i < GZ_LINE_COLUMNS; i += LINE_BLOCK)
+		filter_block(&window->ids[REACH + row][REACH + i],
+			     &window->depth[REACH + row][REACH + i], stencil, one_object, threshold,
+			     out_lines + i);
+}
+
 /* gz_feature_lines() */
-static void find_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
+static bool find_lines(const struct gz_line_window *window, int rows, enum gz_line_filter filter,
 		       float threshold, float *out_lines)
 {
 	const struct window_look look = look_at_window(window, rows, threshold);
 	if (look.one_object && (look.even || window->ids[0][0] == 0)) {
 		memset(out_lines, 0, /* GZ_LINE_NONE */
 		       (size_t)rows * GZ_LINE_COLUMNS * sizeof *out_lines);
-		return;
+		return false;
 	}
 	for (int row = 0; row < rows; row++)
-		filter_lines(&window->ids[REACH + row][REACH], &window->depth[REACH + row][REACH],
-			     &line_stencils[filter], look.one_object, threshold,
+		filter_lines(window, row, &line_stencils[filter], look.one_object, threshold,
 			     out_lines + (size_t)row * GZ_LINE_COLUMNS);
+	return true;
 }
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/illustration/shading_map_loops.h"
 #include "render/illustration/shading_tile.h"
 
 /* Rows that are reduced to cells at once: whole cells of every level. */
@@ -87,15 +88,22 @@ static float *take_floats(float *memory, size_t count, size_t *used)
 	return taken;
 }
 
+/* What there must be room for besides what settings ask for. */
+struct picture_needs {
+	int threads;
+	bool map;
+};
+
 /* Lay all planes of a frame out one after the other. @param memory  NULL: only to count
  * @return floats in all */
 static size_t lay_planes_out(struct gz_shading_picture *picture,
 			     const struct gz_shading_frame *frame, const bool wanted[BLURS],
-			     int threads, float *memory)
+			     const struct picture_needs *needs, float *memory)
 {
 	size_t used = 0;
-	picture->map = take_floats(memory, cells_of_level(frame, 0), &used);
-	picture->row_room = take_floats(memory, (size_t)threads * 2 * (size_t)frame->width, &used);
+	const size_t threads = (size_t)needs->threads;
+	picture->map = needs->map ? take_floats(memory, cells_of_level(frame, 0), &used) : NULL;
+	picture->row_room = take_floats(memory, threads * 2 * (size_t)frame->width, &used);
 	for (int level = 0; level < LEVELS; level++) {
 		bool needed = level > 0 && level <= picture->levels_most;
 		for (int i = 0; i < BLURS; i++)
@@ -115,8 +123,10 @@ static size_t lay_planes_out(struct gz_shading_picture *picture,
 
 static enum gz_result make_picture_room(struct gz_shading_picture *picture,
 					const struct gz_shading_frame *frame,
-					const struct gz_shading_settings *settings, int threads)
+					const struct gz_shading_settings *settings,
+					const struct picture_needs *needs)
 {
+	const int threads = needs->threads;
 	bool wanted[BLURS];
 	if (picture->room_count < threads) {
 		free(picture->rooms);
@@ -127,7 +137,7 @@ static enum gz_result make_picture_room(struct gz_shading_picture *picture,
 		picture->room_count = threads;
 	}
 	plan_blurs(picture, frame, settings, wanted);
-	const size_t floats = lay_planes_out(picture, frame, wanted, threads, NULL);
+	const size_t floats = lay_planes_out(picture, frame, wanted, needs, NULL);
 	if (picture->capacity < floats) {
 		free(picture->memory);
 		picture->capacity = 0;
@@ -136,7 +146,7 @@ static enum gz_result make_picture_room(struct gz_shading_picture *picture,
 			return GZ_ERR_NO_MEM;
 		picture->capacity = floats;
 	}
-	(void)lay_planes_out(picture, frame, wanted, threads, picture->memory);
+	(void)lay_planes_out(picture, frame, wanted, needs, picture->memory);
 	return GZ_OK;
 }
 
@@ -304,8 +314,8 @@ enum gz_result gz_shading_picture_compose(struct gz_shading_picture *picture,
 	if (frame->width < 1 || frame->height < 1 || !(frame->near < frame->far) ||
 	    !gz_options_hold(gz_shading_options, gz_shading_option_count, settings))
 		return GZ_ERR_INVAL;
-	const enum gz_result result =
-		make_picture_room(picture, frame, settings, gz_workers_count(workers));
+	const struct picture_needs needs = { gz_workers_count(workers), out_map };
+	const enum gz_result result = make_picture_room(picture, frame, settings, &needs);
 	if (result != GZ_OK)
 		return result;
 	const size_t height = (size_t)frame->height;
@@ -319,16 +329,12 @@ enum gz_result gz_shading_picture_compose(struct gz_shading_picture *picture,
 		gz_workers_run(workers, blur_part, &job, reduced);
 	gz_workers_run(workers, compose_part, &job,
 		       (height + GZ_SHADING_TILE_ROWS - 1) / GZ_SHADING_TILE_ROWS);
-	*out_map = picture->map;
+	if (out_map)
+		*out_map = picture->map;
 	return GZ_OK;
 }
 
 void gz_shading_grey(const float *map, size_t count, uint32_t *out_pixels)
 {
-	for (size_t i = 0; i < count; i++) {
-		const float low = map[i] > 0 ? map[i] : 0;
-		const float value = low < 1 ? low : 1;
-		const uint32_t grey = (uint32_t)(int)(value * 255 + 0.5F);
-		out_pixels[i] = UINT32_C(0xFF000000) | grey << 16 | grey << 8 | grey;
-	}
+	grey_loop(map, count, out_pixels);
 }

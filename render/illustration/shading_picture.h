@@ -52,7 +52,7 @@ enum gz_result gz_shading_picture_create(struct gz_shading_picture **out_picture
  * @param workers   share the rows. The same bits for any number
  * @param[out] out_pixels  width * height pixels as gz_shading_grey() makes them; NULL: not wanted
  * @param[out] out_map  width * height brightnesses, [0, 1]; owned by the picture, valid until the
- *                      next call
+ *                      next call; NULL: not wanted, which saves time
  * @retval GZ_ERR_INVAL   a side below 1, near not below far, or settings out of range
  * @retval GZ_ERR_NO_MEM  out of memory; not logged
  */

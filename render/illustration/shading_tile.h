@@ -37,20 +37,14 @@ struct gz_shading_shared {
 	const struct gz_tone_curve *curve;
 	const struct gz_haze_table *haze;
 	struct gz_shading_weights weights;
-	float *map;           /**< of the whole picture */
+	float *map;           /**< of the whole picture; NULL: not wanted */
 	uint32_t *out_pixels; /**< likewise, as gz_shading_grey() makes them; NULL: not wanted */
 };
 
 /** Planes of a tile, row by row; room of each worker. */
 struct gz_shading_tile {
 	struct gz_line_window window;
-	uint32_t ids[GZ_SHADING_TILE_PIXELS];
-	float depth[GZ_SHADING_TILE_PIXELS], map[GZ_SHADING_TILE_PIXELS];
-	float edge[GZ_SHADING_TILE_PIXELS], shadow[GZ_SHADING_TILE_PIXELS];
-	float haze[GZ_SHADING_TILE_PIXELS], scene[GZ_SHADING_TILE_PIXELS];
 	float strong[GZ_SHADING_TILE_PIXELS], thin[GZ_SHADING_TILE_PIXELS];
-	float apart[GZ_SHADING_TILE_PIXELS];
-	float room[GZ_SHADING_TILE_PIXELS], other_room[GZ_SHADING_TILE_PIXELS];
 };
 
 /** Compose the tile whose first pixel is (@p x, @p y), multiples of its size. Threads: any, each

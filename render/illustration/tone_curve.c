@@ -1,26 +1,12 @@
 #include "render/illustration/tone_curve.h"
 
-#include <string.h>
-
-/* The bin of a brightness. */
-static size_t tone_bin(float value)
-{
-	const float at = value * GZ_TONE_BINS;
-	if (at < 1)
-		return 0;
-	return at < GZ_TONE_BINS ? (size_t)at : GZ_TONE_BINS - 1; /* NaN: the last */
-}
+#include "render/illustration/plane_kernels.h"
+#include "render/illustration/tone_loops.h"
 
 void gz_tone_count(const void *map, const uint32_t *ids, size_t count, size_t step,
 		   struct gz_tone_histogram *histogram)
 {
-	for (size_t i = 0; i < count; i += step) {
-		float value;
-		if (ids[i] == 0)
-			continue;
-		memcpy(&value, (const char *)map + i * sizeof value, sizeof value);
-		histogram->counts[tone_bin(value)]++;
-	}
+	gz_plane_kernels_find()->count_tones(map, ids, count, step, histogram);
 }
 
 void gz_tone_curve_make(const struct gz_tone_histogram *histograms, size_t count,
@@ -75,7 +61,5 @@ void gz_tone_curve_soften(float share, struct gz_tone_curve *curve)
 
 void gz_tone_apply(const struct gz_tone_curve *curve, const uint32_t *ids, size_t count, float *map)
 {
-	for (size_t i = 0; i < count; i++)
-		if (ids[i] != 0)
-			map[i] = curve->values[tone_bin(map[i])];
+	tone_apply_loop(curve, ids, count, map);
 }

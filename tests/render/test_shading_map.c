@@ -450,8 +450,8 @@ static void instruction_sets_blur_alike(void **state)
 	plain->halve_rows(depth, depth + WIDE, WIDE, portable);
 	assert_memory_equal(found, portable, sizeof found);
 	for (int level = 0; level <= GZ_BLUR_LEVELS_MAX; level++) {
-		best->enlarge_row(depth, depth + WIDE, 0.3F, WIDE, level, 64, found);
-		plain->enlarge_row(depth, depth + WIDE, 0.3F, WIDE, level, 64, portable);
+		best->enlarge_cells(depth, WIDE, HIGH, level, 64, 1, found);
+		plain->enlarge_cells(depth, WIDE, HIGH, level, 64, 1, portable);
 		assert_memory_equal(found, portable, GZ_BLUR_COLUMNS * sizeof *found);
 	}
 }

@@ -28,10 +28,11 @@ struct gz_illustrate_cast {
 	int layers; /**< 1 to GZ_ILLUSTRATE_LAYERS_MAX; 1: no mesh is transparent */
 };
 
-/** The rays of a tile. */
+/** The rays of a tile: ray i is that of pixel x + columns[i] * spacing, y + rows[i] * spacing. */
 struct gz_illustrate_tile {
-	float x[GZ_ILLUSTRATE_RAYS], y[GZ_ILLUSTRATE_RAYS]; /**< pixels of its rays */
-	uint32_t active;                                    /**< bit i: cast ray i */
+	float x, y, spacing;           /**< px */
+	const uint8_t *columns, *rows; /**< GZ_ILLUSTRATE_RAYS of each */
+	uint32_t active;               /**< bit i: cast ray i */
 };
 
 /** What the rays found. Where there is nothing, ids are 0 and all else is INFINITY. */
@@ -42,16 +43,26 @@ struct gz_illustrate_hits {
 	uint32_t ids[GZ_ILLUSTRATE_RAYS];
 };
 
-/**
- * Cast a tile. What a ray finds depends on its pixel alone. A surface that is seen from behind is
- * shaded as if it faced the viewer. Threads: any number. Does not allocate.
- *
- * @param[out] out_hits  of each layer: the first surface, then, as long as those before it are
- *                       transparent, the next ones. The last layer is the next opaque surface:
- *                       transparent ones in between are left out
- */
-void gz_illustrate_tile_cast(const struct gz_illustrate_cast *cast,
-			     const struct gz_illustrate_tile *tile,
-			     struct gz_illustrate_hits out_hits[GZ_ILLUSTRATE_LAYERS_MAX]);
+/** The caster of tiles for one instruction set. All of them give the same bits. */
+struct gz_illustrate_kernel {
+	const char *name; /**< as in struct gz_cast_kernels */
+	const char *isa;  /**< as Embree names it */
+	/**
+	 * Cast a tile. What a ray finds depends on its pixel alone. A surface that is seen from
+	 * behind is shaded as if it faced the viewer. Threads: any number. Does not allocate.
+	 *
+	 * @param[out] out_hits  of each layer: the first surface, then, as long as those before it
+	 *                       are transparent, the next ones. The last layer is the next opaque
+	 *                       surface: transparent ones in between are left out
+	 */
+	void (*cast)(const struct gz_illustrate_cast *cast, const struct gz_illustrate_tile *tile,
+		     struct gz_illustrate_hits out_hits[GZ_ILLUSTRATE_LAYERS_MAX]);
+};
+
+extern const struct gz_illustrate_kernel gz_illustrate_portable;
+#ifdef GZ_CAST_X86
+extern const struct gz_illustrate_kernel gz_illustrate_avx2;
+extern const struct gz_illustrate_kernel gz_illustrate_avx512;
+#endif
 
 #endif

@@ -22,7 +22,7 @@ enum { TILES_A_PART = 32 };
 
 struct gz_illustrate_caster {
 	const struct gz_log *log;
-	const char *simd; /* of the kernels of planes */
+	const struct gz_illustrate_kernel *kernel;
 	struct gz_workers *workers;
 	struct gz_illustrate_scene scene;
 	struct gz_surface_tree tree;
@@ -51,25 +51,42 @@ enum gz_result gz_illustrate_caster_check(const struct gz_backend_params *params
 	return gz_cpu_raycaster_check(params, log);
 }
 
+/* The kernel of an instruction set that this processor runs. */
+static const struct gz_illustrate_kernel *find_illustrate_kernel(const char *simd)
+{
+	static const struct gz_illustrate_kernel *const kernels[] = {
+#ifdef GZ_CAST_X86
+		&gz_illustrate_avx512,
+		&gz_illustrate_avx2,
+#endif
+		&gz_illustrate_portable,
+	};
+	const struct gz_cast_kernels *found = gz_cast_kernels_find(simd);
+	for (size_t i = 0; found && i < sizeof kernels / sizeof kernels[0]; i++)
+		if (strcmp(kernels[i]->name, found->name) == 0)
+			return kernels[i];
+	return &gz_illustrate_portable;
+}
+
 static enum gz_result start_illustrating(struct gz_illustrate_caster *caster,
 					 const struct gz_backend_params *params)
 {
 	enum gz_result result = gz_illustrate_caster_check(params, caster->log);
 	if (result != GZ_OK)
 		return result;
-	caster->simd = gz_cast_kernels_find(params->simd)->name;
+	caster->kernel = find_illustrate_kernel(params->simd);
 	result = gz_workers_create(params->threads, &caster->workers);
 	if (result != GZ_OK) {
 		gz_err(caster->log, "cannot start %d threads: %s", params->threads,
 		       gz_result_text(result));
 		return result;
 	}
-	snprintf(caster->description, sizeof caster->description, "%s, %d threads", caster->simd,
-		 gz_workers_count(caster->workers));
+	snprintf(caster->description, sizeof caster->description, "%s, %d threads",
+		 caster->kernel->name, gz_workers_count(caster->workers));
 	result = gz_illustrate_picture_open(&caster->picture);
-	/* Embree has no name for the portable set. */
-	const char *isa = strcmp(caster->simd, "portable") == 0 ? "sse2" : caster->simd;
-	return result == GZ_OK ? gz_surface_tree_open(&caster->tree, isa, caster->log) : result;
+	return result == GZ_OK
+		       ? gz_surface_tree_open(&caster->tree, caster->kernel->isa, caster->log)
+		       : result;
 }
 
 enum gz_result gz_illustrate_caster_create(const struct gz_backend_params *params,
@@ -110,16 +127,16 @@ static void fill_illustrate_rays(const struct gz_ray_frame *camera, double world
 	}
 }
 
-static void aim_tile(const struct gz_plan *plan, const struct gz_tile *tile,
-		     struct gz_illustrate_tile *out_rays)
+static struct gz_illustrate_tile aim_tile(const struct gz_plan *plan, const struct gz_tile *tile)
 {
-	const int spacing = plan->layers[tile->layer].spacing;
-	out_rays->active = gz_plan_tile_active(plan, tile);
-	for (int k = 0; k < GZ_ILLUSTRATE_RAYS; k++) {
-		const int column = gz_tile_columns[tile->pattern][k];
-		out_rays->x[k] = (float)(tile->x - plan->view.shift[0] + column * spacing);
-		out_rays->y[k] = (float)(tile->y - plan->view.shift[1] + gz_tile_rows[k] * spacing);
-	}
+	return (struct gz_illustrate_tile) {
+		.x = (float)(tile->x - plan->view.shift[0]),
+		.y = (float)(tile->y - plan->view.shift[1]),
+		.spacing = (float)plan->layers[tile->layer].spacing,
+		.columns = gz_tile_columns[tile->pattern],
+		.rows = gz_tile_rows,
+		.active = gz_plan_tile_active(plan, tile),
+	};
 }
 
 _Static_assert(GZ_TILE_EDGE *GZ_TILE_EDGE == GZ_ILLUSTRATE_RAYS, "a tile is a packet");
@@ -132,9 +149,8 @@ static void store_hits(const struct illustrate_job *job, int layer, const struct
 	memcpy(words[GZ_ILLUSTRATE_DEPTH], hits->depth_mm, sizeof hits->depth_mm);
 	memcpy(words[GZ_ILLUSTRATE_IDS], hits->ids, sizeof hits->ids);
 	memcpy(words[GZ_ILLUSTRATE_DISTANCE], hits->distance_mm, sizeof hits->distance_mm);
-	for (int plane = 0; plane < job->caster->picture.plane_count; plane++)
-		gz_lattices_store(&job->caster->lattices[layer][plane], job->plan, tile, active,
-				  words[plane]);
+	gz_lattices_store_planes(job->caster->lattices[layer], job->caster->picture.plane_count,
+				 job->plan, tile, active, words);
 }
 
 static void illustrate_part(void *user, size_t part, int worker)
@@ -145,10 +161,9 @@ static void illustrate_part(void *user, size_t part, int worker)
 	(void)worker;
 	for (size_t i = from; i < end && i < plan->tile_count; i++) {
 		const struct gz_tile *tile = &plan->tiles[i];
-		struct gz_illustrate_tile rays;
+		const struct gz_illustrate_tile rays = aim_tile(plan, tile);
 		struct gz_illustrate_hits hits[GZ_ILLUSTRATE_LAYERS_MAX];
-		aim_tile(plan, tile, &rays);
-		gz_illustrate_tile_cast(&job->cast, &rays, hits);
+		job->caster->kernel->cast(&job->cast, &rays, hits);
 		for (int layer = 0; layer < job->cast.layers; layer++)
 			store_hits(job, layer, tile, rays.active, &hits[layer]);
 	}
@@ -182,7 +197,7 @@ static enum gz_result prepare_caster(struct gz_illustrate_caster *caster,
 
 static void reconstruct_found(struct gz_illustrate_caster *caster, const struct gz_plan *plan)
 {
-	const struct gz_row_filters *colours = gz_row_filters_find(caster->simd);
+	const struct gz_row_filters *colours = gz_row_filters_find(caster->kernel->name);
 	for (int layer = 0; layer < caster->picture.layers; layer++)
 		for (int i = 0; i < caster->picture.plane_count; i++) {
 			const struct gz_row_filters filters =
@@ -284,8 +299,10 @@ enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
 					 struct gz_pick *out_pick)
 {
 	const struct gz_illustrate_tile rays = {
-		.x = { (float)(request->x - 0.5) },
-		.y = { (float)(request->y - 0.5) },
+		.x = (float)(request->x - 0.5),
+		.y = (float)(request->y - 0.5),
+		.columns = gz_tile_columns[GZ_TILE_SQUARE],
+		.rows = gz_tile_rows,
 		.active = 1,
 	};
 	const int layers = caster->scene.transparent ? GZ_ILLUSTRATE_LAYERS_MAX : 1;
@@ -310,7 +327,7 @@ enum gz_result gz_illustrate_caster_pick(struct gz_illustrate_caster *caster,
 	if (result != GZ_OK)
 		return result;
 	fill_illustrate_cast(caster, layers, &camera, &cast);
-	gz_illustrate_tile_cast(&cast, &rays, hits);
+	caster->kernel->cast(&cast, &rays, hits);
 	for (int layer = 0; layer < layers && seen > 0; layer++)
 		seen = add_picked(&caster->scene, &hits[layer], seen, &pick);
 	*out_pick = pick;

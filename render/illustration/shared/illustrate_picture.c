@@ -87,7 +87,8 @@ static bool is_drawn(const struct gz_illustrate_picture *picture)
 	return picture->drawing.drawn;
 }
 
-/* Compose the map of one layer. Those behind the front one take over its tone curve. */
+/* Compose the map of one layer, or its pixels. Those behind the front one take over its tone curve.
+ */
 static enum gz_result compose_layer(const struct illustrate_composing *composing, int layer,
 				    uint32_t *out_pixels, const float **out_map)
 {
@@ -163,8 +164,9 @@ static enum gz_result add_layer(const struct illustrate_composing *composing, in
 	const size_t pixels = (size_t)image->width * (size_t)image->height;
 	const bool blended = picture->layers > 1, drawn = is_drawn(picture);
 	const float *map = NULL;
-	const enum gz_result result = compose_layer(
-		composing, layer, blended || drawn ? NULL : gz_image_words(image), &map);
+	const enum gz_result result =
+		compose_layer(composing, layer, blended || drawn ? NULL : gz_image_words(image),
+			      blended || drawn ? &map : NULL);
 	if (result == GZ_OK && blended)
 		blend_layer(composing, layer, map, pixels);
 	return result == GZ_OK && drawn ? draw_layer(composing, layer, map, pixels) : result;

@@ -1,0 +1,5 @@
+/* The kernel for one instruction set: illustrate_kernel.h. */
+#include "render/illustration/cpu/illustrate_kernel.h"
+
+const struct gz_illustrate_kernel gz_illustrate_portable = { "portable", "sse2",
+							     cast_illustrate_tile };
