@@ -34,6 +34,9 @@ struct gz_plane_kernels {
 	/** gz_tone_count() */
 	void (*count_tones)(const void *map, const uint32_t *ids, size_t count, size_t step,
 			    struct gz_tone_histogram *histogram);
+	/** gz_shading_row_survey() */
+	void (*survey_row)(const struct gz_shading_frame *frame, int y,
+			   const struct gz_depth_range *range, uint8_t *filled, float *out_shares);
 	/** gz_shading_tile_compose() */
 	void (*compose_tile)(const struct gz_shading_shared *shared, int x, int y,
 			     struct gz_shading_tile *room);

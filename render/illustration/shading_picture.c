@@ -30,6 +30,8 @@ struct gz_shading_picture {
 				*/
 	float *rows[BLURS], *blurred[BLURS]; /* cells; NULL: not wanted */
 	float *row_room;                     /* two rows of each worker */
+	uint8_t *filled;                     /* whether tiles show objects, row by row */
+	size_t filled_room;
 	struct gz_depth_blur blurs[BLURS];
 	int levels_most; /* the highest level that is needed; -1: no blur is wanted */
 	struct gz_tone_curve curve;
@@ -55,6 +57,7 @@ void gz_shading_picture_destroy(struct gz_shading_picture **picture)
 		return;
 	free((*picture)->memory);
 	free((*picture)->rooms);
+	free((*picture)->filled);
 	free(*picture);
 	*picture = NULL;
 }
@@ -136,6 +139,17 @@ static enum gz_result make_picture_room(struct gz_shading_picture *picture,
 			return GZ_ERR_NO_MEM;
 		picture->room_count = threads;
 	}
+	const size_t tiles = (size_t)gz_shading_tiles(frame->width, GZ_SHADING_TILE_COLUMNS) *
+			     (size_t)gz_shading_tiles(frame->height, GZ_SHADING_TILE_ROWS);
+	if (picture->filled_room < tiles) {
+		free(picture->filled);
+		picture->filled_room = 0;
+		picture->filled = malloc(tiles);
+		if (!picture->filled)
+			return GZ_ERR_NO_MEM;
+		picture->filled_room = tiles;
+	}
+	memset(picture->filled, 0, tiles);
 	plan_blurs(picture, frame, settings, wanted);
 	const size_t floats = lay_planes_out(picture, frame, wanted, needs, NULL);
 	if (picture->capacity < floats) {
@@ -150,15 +164,19 @@ static enum gz_result make_picture_room(struct gz_shading_picture *picture,
 	return GZ_OK;
 }
 
-/* Depth of a row as shares of the scene's: in its plane if there is one, otherwise in the room. */
-static float *share_row(const struct picture_job *job, int y, float *room)
+/* Look at a row. Returns its depth as shares of the scene's: in its plane if there is one,
+ * otherwise in the room; NULL if no blur is wanted. */
+static float *survey_row(const struct picture_job *job, int y, float *room)
 {
-	const struct gz_shading_frame *frame = job->frame;
-	const size_t from = (size_t)y * (size_t)frame->width;
-	float *pixels = job->picture->levels[0];
-	float *shares = pixels ? pixels + from : room;
-	gz_depth_share((const char *)frame->depth + from * sizeof(float), frame->ids + from,
-		       frame->width, &job->shared.range, shares);
+	const struct gz_shading_picture *picture = job->picture;
+	const size_t width = (size_t)job->frame->width;
+	float *pixels = picture->levels[0], *shares = NULL;
+	if (picture->levels_most >= 0)
+		shares = pixels ? pixels + (size_t)y * width : room;
+	gz_shading_row_survey(job->frame, y, &job->shared.range,
+			      picture->filled + (ptrdiff_t)(y / GZ_SHADING_TILE_ROWS) *
+							job->shared.tile_columns,
+			      shares);
 	return shares;
 }
 
@@ -172,7 +190,7 @@ static struct gz_plane_band band_of_level(const struct gz_shading_frame *frame, 
 					first + (rest < rows ? rest : rows) };
 }
 
-/* The first rows of cells, from pixels. */
+/* Look at the rows of a part, and make the first rows of cells. */
 static void reduce_pixels(const struct picture_job *job, size_t part, int worker)
 {
 	const struct gz_shading_picture *picture = job->picture;
@@ -180,8 +198,9 @@ static void reduce_pixels(const struct picture_job *job, size_t part, int worker
 	const struct gz_plane_band band = band_of_level(job->frame, 0, part);
 	float *room = picture->row_room + (size_t)worker * 2 * (size_t)width;
 	for (int y = band.first; y < band.end; y += 2) {
-		const float *upper = share_row(job, y, room);
-		const float *lower = y + 1 < band.end ? share_row(job, y + 1, room + width) : upper;
+		const float *upper = survey_row(job, y, room);
+		const float *lower =
+			y + 1 < band.end ? survey_row(job, y + 1, room + width) : upper;
 		if (picture->levels_most > 0)
 			gz_depth_halve(upper, lower, width,
 				       picture->levels[1] +
@@ -222,8 +241,7 @@ static void reduce_part(void *user, size_t part, int worker)
 	const struct picture_job *job = user;
 	const struct gz_shading_picture *picture = job->picture;
 	count_tones(job, part, worker);
-	if (picture->levels_most >= 0)
-		reduce_pixels(job, part, worker);
+	reduce_pixels(job, part, worker);
 	for (int level = 2; level <= picture->levels_most; level++)
 		reduce_cells(job, level, part);
 	for (int i = 0; i < BLURS; i++) {
@@ -281,6 +299,8 @@ static void begin_frame(struct picture_job *job, const struct gz_shading_setting
 		.curve = &picture->curve,
 		.haze = &picture->haze,
 		.map = picture->map,
+		.filled = picture->filled,
+		.tile_columns = gz_shading_tiles(job->frame->width, GZ_SHADING_TILE_COLUMNS),
 		.weights = {
 			.scene = 1, /* its weights are in the plane */
 			.edge_light = (float)settings->edge_light,

@@ -56,14 +56,33 @@ static inline bool all_are_empty(const uint32_t *ids, int count)
 	return any == 0;
 }
 
-static inline bool tile_is_empty(const struct gz_shading_frame *frame,
-				 const struct tile_place *place)
+/* Survey the pixels of a row that lie in one tile. */
+static inline bool survey_block(const struct gz_shading_frame *frame, size_t from, int count,
+				const struct gz_depth_range *range, float *restrict shares)
 {
-	for (int row = 0; row < place->rows; row++)
-		if (!all_are_empty(frame->ids + pixel_at(frame, place->x, place->y + row),
-				   place->columns))
-			return false;
-	return true;
+	const bool empty = all_are_empty(frame->ids + from, count);
+	for (int i = 0; i < count && shares && empty; i++)
+		shares[i] = 1;
+	if (shares && !empty)
+		share_depth((const char *)frame->depth + from * sizeof(float), frame->ids + from,
+			    count, range, shares);
+	return !empty;
+}
+
+/* gz_shading_row_survey() */
+static void survey_row(const struct gz_shading_frame *frame, int y,
+		       const struct gz_depth_range *range, uint8_t *filled, float *out_shares)
+{
+	const size_t row = pixel_at(frame, 0, y);
+	for (int x = 0, k = 0; x < frame->width; x += TILE_COLUMNS, k++) {
+		const int rest = frame->width - x;
+		float *shares = out_shares ? out_shares + x : NULL;
+		if (rest >= TILE_COLUMNS)
+			filled[k] |=
+				survey_block(frame, row + (size_t)x, TILE_COLUMNS, range, shares);
+		else
+			filled[k] |= survey_block(frame, row + (size_t)x, rest, range, shares);
+	}
 }
 
 /* A row of the window, where it reaches beyond the left or right border. */
@@ -254,7 +273,7 @@ static void compose_tile(const struct gz_shading_shared *shared, int x, int y,
 			 struct gz_shading_tile *tile)
 {
 	const struct tile_place place = place_of_tile(shared->frame, x, y);
-	if (tile_is_empty(shared->frame, &place)) {
+	if (!shared->filled[y / GZ_SHADING_TILE_ROWS * shared->tile_columns + x / TILE_COLUMNS]) {
 		for (int row = 0; row < place.rows; row++)
 			write_empty_row(shared, pixel_at(shared->frame, x, y + row), place.columns);
 		return;

@@ -94,6 +94,11 @@ static void store_whole(const struct gz_lattice *lattice, int pattern, int colum
 	}
 }
 
+static int least_of(int a, int b)
+{
+	return a < b ? a : b;
+}
+
 /* The rays in even columns and rows of their tile, which coarser lattices have too. */
 static const struct {
 	uint8_t count, rays[8];
@@ -103,7 +108,7 @@ static const struct {
 };
 
 /* Store the points of a tile that coarser lattices of the pyramid have too. Each coarser lattice
- * has every second point of the finer one along x and y. */
+ * has every second point of the finer one along x and y. The lattices of all planes lie alike. */
 static void store_coarser(const struct gz_lattices planes[], int count, const struct gz_tile *tile,
 			  int last, int column, int row, const tile_points points[])
 {
@@ -111,13 +116,18 @@ static void store_coarser(const struct gz_lattices planes[], int count, const st
 		const int ray = even_rays[tile->pattern].rays[k];
 		const int x = column + gz_tile_columns[tile->pattern][ray];
 		const int y = row + gz_tile_rows[ray];
-		for (int layer = tile->layer + 1; layer <= last; layer++) {
-			const int shift = layer - tile->layer;
-			if ((x | y) & ((1 << shift) - 1))
-				break;
+		/* As many coarser lattices have it as both can be halved. */
+		const int deepest =
+			least_of(last, tile->layer + __builtin_ctz((unsigned)(x | y) |
+								   1U << GZ_PLAN_LAYERS_MAX));
+		for (int layer = tile->layer + 1; layer <= deepest; layer++) {
+			const struct gz_lattice *lattice = &planes[0].layers[layer];
+			const int shift = layer - tile->layer, to_x = x >> shift, to_y = y >> shift;
+			if (to_x >= lattice->columns || to_y >= lattice->rows)
+				continue;
+			const size_t at = (size_t)to_y * lattice->stride + (size_t)to_x;
 			for (int plane = 0; plane < count; plane++)
-				store_point(&planes[plane].layers[layer], x >> shift, y >> shift,
-					    points[plane][ray]);
+				planes[plane].layers[layer].points[at] = points[plane][ray];
 		}
 	}
 }
