@@ -15,6 +15,7 @@
 #include "render/opengl/gl_target.h"
 #include "render/picture/plane.h"
 #include "render/plan/method.h"
+#include "render/raycast/cpu/cast.h"
 #include "render/reconstruct/cpu/reconstruct.h"
 #include "render/reconstruct/gl/gl_reconstruct.h"
 
@@ -83,6 +84,70 @@ static struct gz_plane reconstructed_by_cpu(const struct gz_plan *plan, enum gz_
 	gz_reconstruct(plan, lattices, &filters, workers, plane.words);
 	gz_workers_destroy(&workers);
 	return plane;
+}
+
+/* Planes of each instruction set, and of several planes at once, have the bits of one by the
+ * portable loops. */
+static void check_planes_together(const struct gz_plan *plan, const char *set)
+{
+	enum { KINDS = 2 };
+	const enum gz_plane_kind kinds[KINDS] = { GZ_PLANE_VALUE, GZ_PLANE_ID };
+	const uint32_t untouched = 0x12345678, no_value = 0x7F800000;
+	struct gz_lattices together[KINDS] = { 0 }, alone[KINDS] = { 0 };
+	struct gz_plane planes[KINDS] = { 0 };
+	struct gz_row_filters filters[KINDS];
+	struct gz_reconstructed made[KINDS];
+	struct gz_workers *workers = NULL;
+	size_t left = 0;
+	for (int i = 0; i < KINDS; i++) {
+		assert_int_equal(gz_plane_resize(&planes[i], kinds[i], WIDTH, HEIGHT), GZ_OK);
+		for (int k = 0; k < WIDTH * HEIGHT; k++)
+			planes[i].words[k] = untouched;
+		assert_int_equal(gz_lattices_prepare(&together[i], plan, planes[i].words), GZ_OK);
+		filters[i] = gz_row_filters_of_plane(kinds[i], gz_row_filters_find(set));
+		made[i] = (struct gz_reconstructed) { &together[i], &filters[i], planes[i].words,
+						      kinds[i] == GZ_PLANE_VALUE };
+	}
+	for (size_t t = 0; t < plan->tile_count; t++) {
+		const struct gz_tile *tile = &plan->tiles[t];
+		const int spacing = plan->layers[tile->layer].spacing;
+		uint32_t words[KINDS][GZ_TILE_EDGE * GZ_TILE_EDGE];
+		for (int i = 0; i < KINDS; i++)
+			for (int k = 0; k < GZ_TILE_EDGE * GZ_TILE_EDGE; k++)
+				words[i][k] = word_at(kinds[i],
+						      tile->x + gz_tile_columns[tile->pattern][k] *
+									spacing,
+						      tile->y + gz_tile_rows[k] * spacing);
+		gz_lattices_store_planes(together, KINDS, plan, tile,
+					 gz_plan_tile_active(plan, tile),
+					 (const uint32_t(*)[GZ_TILE_EDGE * GZ_TILE_EDGE]) words);
+	}
+	assert_int_equal(gz_workers_create(2, &workers), GZ_OK);
+	gz_reconstruct_planes(plan, made, KINDS, workers);
+	gz_workers_destroy(&workers);
+	for (int i = 0; i < KINDS; i++) {
+		struct gz_plane plane = reconstructed_by_cpu(plan, kinds[i], &alone[i]);
+		for (int k = 0; k < WIDTH * HEIGHT; k++) {
+			const bool is_left = planes[i].words[k] == untouched;
+			left += is_left;
+			assert_int_equal(is_left ? no_value : planes[i].words[k], plane.words[k]);
+		}
+		gz_plane_free(&plane);
+		gz_plane_free(&planes[i]);
+		gz_lattices_free(&together[i]);
+		gz_lattices_free(&alone[i]);
+	}
+	/* Something is left as it was where a plan makes points from coarser ones. */
+	assert_true(plan->reconstruction != GZ_RECONSTRUCT_PYRAMID || left > 0);
+}
+
+static void check_planes_by_sets(const struct gz_plan *plan, const char *name)
+{
+	static const char *const sets[] = { "portable", "avx2", "avx512" };
+	(void)name;
+	for (size_t k = 0; k < sizeof sets / sizeof *sets; k++)
+		if (gz_cast_kernels_find(sets[k]))
+			check_planes_together(plan, sets[k]);
 }
 
 /* Whether what a pixel shows is near, within the widest spacing, where the plane has an edge. */
@@ -159,6 +224,12 @@ static void check_on_cpu(const struct gz_plan *plan, const char *name)
 	gz_plane_free(&values);
 	gz_plane_free(&ids);
 	gz_lattices_free(&lattices);
+}
+
+static void planes_together_are_as_alone(void **state)
+{
+	(void)state;
+	for_all_plans(check_planes_by_sets);
 }
 
 static void numbers_and_objects_are_reconstructed_by_every_method(void **state)
@@ -389,6 +460,7 @@ TEST_SUITE(planes)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(numbers_and_objects_are_reconstructed_by_every_method),
+		cmocka_unit_test(planes_together_are_as_alone),
 		cmocka_unit_test(planes_of_gl_equal_the_cpus_by_every_method),
 		cmocka_unit_test(planes_beyond_the_longest_side_are_refused),
 		cmocka_unit_test(target_holds_colour_object_and_value_of_what_is_nearest),

@@ -388,11 +388,23 @@ static void steps_within_an_object_are_inner_lines(void **state)
 		    "...-...");
 }
 
-/* The loops of this processor's instruction set and the portable ones find the same lines: of one
- * object that is even, that bends, and of several. */
-static void instruction_sets_find_the_same_lines(void **state)
+/* The kernels that this processor runs, the best first. @return how many */
+static size_t list_kernels(const struct gz_plane_kernels *all[3])
 {
-	(void)state;
+	size_t count = 0;
+	all[count++] = gz_plane_kernels_find();
+#ifdef GZ_ILLUSTRATION_X86
+	if (__builtin_cpu_supports("avx2"))
+		all[count++] = &gz_plane_kernels_avx2;
+#endif
+	all[count++] = &gz_plane_kernels_portable;
+	return count;
+}
+
+/* The loops of each instruction set and the portable ones find the same lines: of one object that
+ * is even, that bends, and of several. */
+static void check_lines_of(const struct gz_plane_kernels *kernels)
+{
 	static struct gz_line_window windows[3];
 	static float found[GZ_LINE_ROWS * GZ_LINE_COLUMNS],
 		portable[GZ_LINE_ROWS * GZ_LINE_COLUMNS];
@@ -407,26 +419,26 @@ static void instruction_sets_find_the_same_lines(void **state)
 			}
 	for (int kind = 0; kind < 3; kind++)
 		for (enum gz_line_filter k = GZ_LINES_4; k < GZ_LINE_FILTER_COUNT; k++) {
-			gz_plane_kernels_find()->find_lines(&windows[kind], GZ_LINE_ROWS, k, 0.1F,
-							    found);
-			gz_plane_kernels_portable.find_lines(&windows[kind], GZ_LINE_ROWS, k, 0.1F,
-							     portable);
+			const bool any =
+				kernels->find_lines(&windows[kind], GZ_LINE_ROWS, k, 0.1F, found);
+			assert_int_equal(gz_plane_kernels_portable.find_lines(
+						 &windows[kind], GZ_LINE_ROWS, k, 0.1F, portable),
+					 any);
 			assert_memory_equal(found, portable, sizeof found);
 			size_t lines = 0;
 			for (size_t i = 0; i < sizeof found / sizeof *found; i++)
 				lines += found[i] != GZ_LINE_NONE;
 			assert_true((kind == 0) == (lines == 0));
+			assert_true((kind == 0) == !any);
 		}
 }
 
-static void instruction_sets_blur_alike(void **state)
+static void check_blur_of(const struct gz_plane_kernels *best)
 {
-	(void)state;
 	enum { WIDE = 203, HIGH = 31 };
 	static uint32_t ids[HIGH * WIDE];
 	static float depth[HIGH * WIDE], found[HIGH * WIDE], portable[HIGH * WIDE];
 	const struct gz_plane_band all = { WIDE, HIGH, 0, HIGH };
-	const struct gz_plane_kernels *best = gz_plane_kernels_find();
 	const struct gz_plane_kernels *plain = &gz_plane_kernels_portable;
 	const struct gz_depth_range range = { 0.25F, 0.75F };
 	struct gz_gaussian gaussian;
@@ -453,6 +465,52 @@ static void instruction_sets_blur_alike(void **state)
 		best->enlarge_cells(depth, WIDE, HIGH, level, 64, 1, found);
 		plain->enlarge_cells(depth, WIDE, HIGH, level, 64, 1, portable);
 		assert_memory_equal(found, portable, GZ_BLUR_COLUMNS * sizeof *found);
+	}
+}
+
+static void instruction_sets_make_the_same_planes(void **state)
+{
+	(void)state;
+	const struct gz_plane_kernels *all[3];
+	const size_t count = list_kernels(all);
+	for (size_t i = 0; i < count; i++) {
+		check_lines_of(all[i]);
+		check_blur_of(all[i]);
+	}
+}
+
+/* Blocks of many columns, and what is left beside them, are weighted means: by the formula. */
+static void blur_is_the_weighted_mean_of_wide_planes(void **state)
+{
+	(void)state;
+	enum { WIDE = 150, HIGH = 9 };
+	static float plane[HIGH * WIDE], found[HIGH * WIDE];
+	const struct gz_plane_band all = { WIDE, HIGH, 0, HIGH };
+	struct gz_gaussian gaussian;
+	uint32_t seed = 23;
+	for (size_t i = 0; i < HIGH * WIDE; i++)
+		plane[i] = (float)field_random(&seed);
+	gz_gaussian_make(2, &gaussian);
+	for (int along_rows = 0; along_rows < 2; along_rows++) {
+		if (along_rows)
+			gz_blur_along_rows(&gaussian, &all, plane, found);
+		else
+			gz_blur_along_columns(&gaussian, &all, plane, found);
+		for (int y = 0; y < HIGH; y++)
+			for (int x = 0; x < WIDE; x++) {
+				double sum = 0;
+				for (int k = -gaussian.radius; k <= gaussian.radius; k++) {
+					const int column = along_rows ? x + k : x;
+					const int row = along_rows ? y : y + k;
+					const int in_x = column < 0      ? 0
+							 : column < WIDE ? column
+									 : WIDE - 1;
+					const int in_y = row < 0 ? 0 : row < HIGH ? row : HIGH - 1;
+					sum += (double)gaussian.weights[abs(k)] *
+					       (double)plane[in_y * WIDE + in_x];
+				}
+				assert_float_equal(found[y * WIDE + x], sum, 1e-6);
+			}
 	}
 }
 
@@ -579,8 +637,8 @@ TEST_SUITE(shading_map)
 		cmocka_unit_test(silhouettes_lie_on_the_nearer_object),
 		cmocka_unit_test(order_of_ids_does_not_matter),
 		cmocka_unit_test(steps_within_an_object_are_inner_lines),
-		cmocka_unit_test(instruction_sets_find_the_same_lines),
-		cmocka_unit_test(instruction_sets_blur_alike),
+		cmocka_unit_test(instruction_sets_make_the_same_planes),
+		cmocka_unit_test(blur_is_the_weighted_mean_of_wide_planes),
 		cmocka_unit_test(fading_moves_towards_white),
 		cmocka_unit_test(edge_light_and_shadow_are_both_parts_of_one_mask),
 		cmocka_unit_test(haze_moves_towards_its_background),

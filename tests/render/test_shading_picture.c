@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/illustration/plane_kernels.h"
 #include "render/illustration/shading_picture.h"
+#include "render/illustration/shading_tile.h"
 #include "render/illustration/tone_curve.h"
 
 enum { WIDE = 96, HIGH = 70, PIXELS = WIDE * HIGH };
@@ -66,6 +68,11 @@ static void compose(const struct gz_shading_frame *frame,
 		gz_shading_picture_compose(picture, frame, settings, workers, pixels, &map), GZ_OK);
 	memcpy(out_map, map, PIXELS * sizeof *map);
 	gz_shading_grey(map, PIXELS, grey);
+	assert_memory_equal(pixels, grey, sizeof grey);
+	/* The same pixels without the map. */
+	memset(pixels, 0, sizeof pixels);
+	assert_int_equal(
+		gz_shading_picture_compose(picture, frame, settings, workers, pixels, NULL), GZ_OK);
 	assert_memory_equal(pixels, grey, sizeof grey);
 	gz_workers_destroy(&workers);
 	gz_shading_picture_destroy(&picture);
@@ -204,6 +211,74 @@ static void threads_and_sizes_before_change_nothing(void **state)
 	gz_shading_picture_destroy(&picture);
 }
 
+/* All tiles of a frame by some kernels. */
+static void compose_tiles(const struct gz_plane_kernels *kernels,
+			  const struct gz_shading_shared *shared)
+{
+	static struct gz_shading_tile room;
+	static uint8_t filled[PIXELS];
+	struct gz_shading_shared own = *shared;
+	own.tile_columns = gz_shading_tiles(WIDE, GZ_SHADING_TILE_COLUMNS);
+	own.filled = filled;
+	memset(filled, 0, sizeof filled);
+	for (int y = 0; y < HIGH; y++)
+		kernels->survey_row(
+			shared->frame, y, &shared->range,
+			filled + (ptrdiff_t)(y / GZ_SHADING_TILE_ROWS) * own.tile_columns, NULL);
+	for (int y = 0; y < HIGH; y += GZ_SHADING_TILE_ROWS)
+		for (int x = 0; x < WIDE; x += GZ_SHADING_TILE_COLUMNS)
+			kernels->compose_tile(&own, x, y, &room);
+}
+
+/* The same bits by each instruction set, and tiles that show nothing are white. */
+static void instruction_sets_compose_alike(void **state)
+{
+	(void)state;
+	static struct gz_haze_table haze;
+	static struct gz_tone_curve curve;
+	static struct gz_tone_histogram histogram;
+	static float map[PIXELS], portable[PIXELS], cells[PIXELS];
+	static uint32_t pixels[PIXELS], portable_pixels[PIXELS];
+	struct gz_shading_frame frame = make_frame();
+	struct gz_shading_settings settings = plain_settings();
+	settings.importance = settings.viewer_distance = settings.object_distance = 0.3;
+	settings.object_distance_mm = 10;
+	settings.lines = settings.haze = 0.7;
+	frame.object_distance_mm = far_mm;
+	gz_tone_count(tone, ids, PIXELS, 1, &histogram);
+	gz_tone_curve_make(&histogram, 1, &curve);
+	gz_haze_table_make(0.1, 0.9, 0.8, &haze);
+	for (int i = 0; i < PIXELS; i++)
+		cells[i] = (float)(i % 17) / 17;
+	struct gz_shading_shared shared = {
+		.frame = &frame,
+		.settings = &settings,
+		.range = { 10, 20 },
+		.edge = { 0, WIDE, HIGH, cells },
+		.shadow = { 1, WIDE / 2, HIGH / 2, cells },
+		.curve = &curve,
+		.haze = &haze,
+		.weights = { 1, 0.5F, 0.4F, 0.7F, 0.7F, 0.9F },
+		.map = portable,
+		.out_pixels = portable_pixels,
+	};
+	compose_tiles(&gz_plane_kernels_portable, &shared);
+	assert_float_equal(at(portable, 90, 68), 1, 0);
+	assert_true(at(portable, 49, 35) < 0.6F);
+	shared.map = map;
+	shared.out_pixels = pixels;
+	compose_tiles(gz_plane_kernels_find(), &shared);
+	assert_memory_equal(map, portable, sizeof map);
+	assert_memory_equal(pixels, portable_pixels, sizeof pixels);
+#ifdef GZ_ILLUSTRATION_X86
+	memset(map, 0, sizeof map);
+	if (!__builtin_cpu_supports("avx2"))
+		return;
+	compose_tiles(&gz_plane_kernels_avx2, &shared);
+	assert_memory_equal(map, portable, sizeof map);
+#endif
+}
+
 static void grey_is_rounded_and_opaque(void **state)
 {
 	(void)state;
@@ -224,6 +299,7 @@ TEST_SUITE(shading_picture)
 		cmocka_unit_test(each_setting_changes_what_it_names),
 		cmocka_unit_test(borders_have_light_line_and_shadow),
 		cmocka_unit_test(threads_and_sizes_before_change_nothing),
+		cmocka_unit_test(instruction_sets_compose_alike),
 		cmocka_unit_test(grey_is_rounded_and_opaque),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -43,7 +43,8 @@ struct gz_illustrate_hits {
 	uint32_t ids[GZ_ILLUSTRATE_RAYS];
 };
 
-/** The caster of tiles for one instruction set. All of them give the same bits. */
+/** The caster of tiles for one instruction set. All of them give the same bits for the same hits;
+ *  Embree finds places that differ in their last bits. */
 struct gz_illustrate_kernel {
 	const char *name; /**< as in struct gz_cast_kernels */
 	const char *isa;  /**< as Embree names it */

@@ -195,16 +195,26 @@ static enum gz_result prepare_caster(struct gz_illustrate_caster *caster,
 	return result == GZ_OK ? prepare_tree(caster) : result;
 }
 
-static void reconstruct_found(struct gz_illustrate_caster *caster, const struct gz_plan *plan)
+/* @param needs_depth  someone reads depth where there is nothing, too */
+static void reconstruct_found(struct gz_illustrate_caster *caster, const struct gz_plan *plan,
+			      bool needs_depth)
 {
 	const struct gz_row_filters *colours = gz_row_filters_find(caster->kernel->name);
+	struct gz_row_filters filters[GZ_ILLUSTRATE_FOUND];
+	struct gz_reconstructed planes[GZ_ILLUSTRATE_LAYERS_MAX * GZ_ILLUSTRATE_FOUND];
+	int count = 0;
+	for (int i = 0; i < caster->picture.plane_count; i++)
+		filters[i] = gz_row_filters_of_plane(gz_illustrate_found_kinds[i], colours);
 	for (int layer = 0; layer < caster->picture.layers; layer++)
-		for (int i = 0; i < caster->picture.plane_count; i++) {
-			const struct gz_row_filters filters =
-				gz_row_filters_of_plane(gz_illustrate_found_kinds[i], colours);
-			gz_reconstruct(plan, &caster->lattices[layer][i], &filters, caster->workers,
-				       caster->picture.planes[layer][i].words);
-		}
+		for (int i = 0; i < caster->picture.plane_count; i++)
+			planes[count++] = (struct gz_reconstructed) {
+				.lattices = &caster->lattices[layer][i],
+				.filters = &filters[i],
+				.picture = caster->picture.planes[layer][i].words,
+				.leaves_empty = gz_illustrate_found_kinds[i] == GZ_PLANE_VALUE &&
+						!(needs_depth && i == GZ_ILLUSTRATE_DEPTH),
+			};
+	gz_reconstruct_planes(plan, planes, count, caster->workers);
 }
 
 /* What all rays share. */
@@ -256,7 +266,7 @@ enum gz_result gz_illustrate_caster_draw(struct gz_illustrate_caster *caster,
 	const int64_t prepared_ns = gz_clock_now_ns();
 	cast_shot(caster, shot, &camera);
 	const int64_t cast_ns = gz_clock_now_ns();
-	reconstruct_found(caster, plan);
+	reconstruct_found(caster, plan, planes || caster->picture.drawing.drawn);
 	result = gz_illustrate_picture_compose(&caster->picture, &caster->scene, &caster->frame,
 					       caster->workers, image, planes);
 	const bool made = caster->scene.made != made_before;

@@ -43,9 +43,8 @@ bool gz_reconstruct_streams(const struct gz_plan *plan)
 /* What the threads that make a picture share. */
 struct reconstruction {
 	const struct gz_plan *plan;
-	const struct gz_lattices *lattices;
-	const struct gz_row_filters *filters;
-	uint32_t *picture;
+	const struct gz_reconstructed *planes;
+	int count;
 	int square_columns; /* of a pyramid */
 };
 
@@ -198,21 +197,20 @@ static void write_pixels(const struct region_row *row, int x0, int x1, uint32_t 
 }
 
 /* Fill row y of a picture of regions. */
-static void fill_region_row(const struct reconstruction *job, int y)
+static void fill_region_row(const struct gz_plan *plan, const struct gz_reconstructed *plane, int y)
 {
-	const struct gz_plan *plan = job->plan;
-	uint32_t *pixels = job->picture + (size_t)y * (size_t)plan->width;
+	uint32_t *pixels = plane->picture + (size_t)y * (size_t)plan->width;
 	struct region_row row = {
 		.plan = plan,
-		.lattices = job->lattices,
-		.filters = job->filters,
+		.lattices = plane->lattices,
+		.filters = plane->filters,
 		.y = y,
 	};
 	for (int layer = 0; layer < plan->layer_count; layer++)
 		gz_region_columns(&plan->layers[layer].region, y, plan->width, &row.from[layer],
 				  &row.to[layer]);
 	int from = 0, to = 0;
-	if (job->lattices->layers[0].points == job->picture)
+	if (plane->lattices->layers[0].points == plane->picture)
 		unshared_columns(&row, &from, &to);
 	write_pixels(&row, 0, from, pixels);
 	write_pixels(&row, to, plan->width, pixels);
@@ -223,30 +221,28 @@ static void fill_region_rows(void *user, size_t part, int worker)
 	(void)worker;
 	const struct reconstruction *job = user;
 	const int from = (int)part * ROWS_A_PART;
-	for (int y = from; y < from + ROWS_A_PART && y < job->plan->height; y++)
-		fill_region_row(job, y);
-	job->filters->settle();
+	for (int i = 0; i < job->count; i++) {
+		for (int y = from; y < from + ROWS_A_PART && y < job->plan->height; y++)
+			fill_region_row(job->plan, &job->planes[i], y);
+		job->planes[i].filters->settle();
+	}
 }
 
 static void fill_pyramid_square(void *user, size_t part, int worker)
 {
 	(void)worker;
 	const struct reconstruction *job = user;
-	gz_reconstruct_square(job->plan, job->lattices, job->filters,
-			      (int)part % job->square_columns, (int)part / job->square_columns);
-	job->filters->settle();
+	for (int i = 0; i < job->count; i++) {
+		gz_reconstruct_square(job->plan, &job->planes[i], (int)part % job->square_columns,
+				      (int)part / job->square_columns);
+		job->planes[i].filters->settle();
+	}
 }
 
-void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattices,
-		    const struct gz_row_filters *filters, struct gz_workers *workers,
-		    uint32_t *picture)
+void gz_reconstruct_planes(const struct gz_plan *plan, const struct gz_reconstructed planes[],
+			   int count, struct gz_workers *workers)
 {
-	struct reconstruction job = {
-		.plan = plan,
-		.lattices = lattices,
-		.filters = filters,
-		.picture = picture,
-	};
+	struct reconstruction job = { .plan = plan, .planes = planes, .count = count };
 	int square_rows;
 	switch (plan->reconstruction) {
 	case GZ_RECONSTRUCT_DIRECT:
@@ -261,4 +257,12 @@ void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattic
 			       ((size_t)plan->height + ROWS_A_PART - 1) / ROWS_A_PART);
 		return;
 	}
+}
+
+void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattices,
+		    const struct gz_row_filters *filters, struct gz_workers *workers,
+		    uint32_t *picture)
+{
+	const struct gz_reconstructed plane = { lattices, filters, picture, false };
+	gz_reconstruct_planes(plan, &plane, 1, workers);
 }

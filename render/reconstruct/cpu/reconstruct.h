@@ -101,6 +101,21 @@ void gz_reconstruct(const struct gz_plan *plan, const struct gz_lattices *lattic
 		    const struct gz_row_filters *filters, struct gz_workers *workers,
 		    uint32_t *picture);
 
+/** One of several planes that are reconstructed together. All pointers are borrowed. */
+struct gz_reconstructed {
+	const struct gz_lattices *lattices; /**< prepared with @p picture, and filled by casting */
+	const struct gz_row_filters *filters; /**< for the plane's kind */
+	uint32_t *picture;                    /**< the plane */
+	/** Of a plane of values: where a wide area has none, INFINITY need not be written. What is
+	 *  there stays undefined; ids tell where. */
+	bool leaves_empty;
+};
+
+/** gz_reconstruct() of planes of one plan: threads wait for each other once, and what a part of the
+ *  picture needs is in the caches for all planes. */
+void gz_reconstruct_planes(const struct gz_plan *plan, const struct gz_reconstructed planes[],
+			   int count, struct gz_workers *workers);
+
 /* Within this room: */
 
 /** Whether a plan's picture is written past the caches. */
@@ -110,8 +125,8 @@ bool gz_reconstruct_streams(const struct gz_plan *plan);
 void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *out_rows);
 
 /** Fill one square of a pyramid's picture. Threads: any number, each with squares of its own. */
-void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
-			   const struct gz_row_filters *filters, int column, int row);
+void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_reconstructed *plane,
+			   int column, int row);
 
 /** The lesser of two numbers. */
 static inline int gz_least(int a, int b)

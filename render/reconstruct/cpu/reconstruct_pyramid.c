@@ -55,7 +55,7 @@ struct square {
 	const struct gz_plan *plan;
 	const struct gz_lattices *lattices;
 	const struct gz_row_filters *filters;
-	bool stream;
+	bool stream, leaves_empty; /* leaves_empty: as in struct gz_reconstructed */
 	struct patch patches[GZ_PLAN_LAYERS_MAX];
 	uint32_t unused_row[SQUARE_WIDTH];
 };
@@ -116,12 +116,25 @@ static bool source_is_flat(const struct square *square, int level, int x, int en
 					below - top, *point_at(coarse, x / 2, y / 2));
 }
 
+/* The bits of INFINITY, which marks points without a value. */
+#define NO_VALUE UINT32_C(0x7F800000)
+
+/* Fill points [x, end) of rows [y, bottom) with one colour. */
+static void fill_flat(const struct square *square, int level, const struct range *points,
+		      uint32_t colour)
+{
+	if (level == 0 && square->leaves_empty && colour == NO_VALUE)
+		return;
+	for (int y = points->y0; y < points->y1; y++)
+		square->filters->fill(colour, point_at(&square->patches[level], points->x0, y),
+				      points->x1 - points->x0, level == 0 && square->stream);
+}
+
 /* Fill points [x, end) of rows [y, bottom), which lie in one row of blocks, from the coarser
  * lattice. */
 static void fill_block_run(struct square *square, int level, int x, int end, int y, int bottom)
 {
 	const struct patch *coarse = &square->patches[level + 1];
-	const bool stream = level == 0 && square->stream;
 	for (int to; x < end; x = to) {
 		to = gz_least(x + FLAT_WIDTH, end);
 		const bool flat = source_is_flat(square, level, x, to, y, bottom);
@@ -133,10 +146,7 @@ static void fill_block_run(struct square *square, int level, int x, int end, int
 				break;
 		}
 		if (flat)
-			for (int row = y; row < bottom; row++)
-				square->filters->fill(colour,
-						      point_at(&square->patches[level], x, row),
-						      to - x, stream);
+			fill_flat(square, level, &(struct range) { x, y, to, bottom }, colour);
 		else
 			for (int row = y; row < bottom; row += 2)
 				double_row(square, level, x, to, row, bottom);
@@ -294,15 +304,13 @@ static int finest_cast(const struct square *square)
  * Returns whether it did. */
 static bool fill_flat_square(const struct square *square, int level)
 {
-	const struct patch *patch = &square->patches[level], *picture = &square->patches[0];
+	const struct patch *patch = &square->patches[level];
 	const struct range *needed = &patch->needed;
 	const uint32_t colour = *point_at(patch, needed->x0, needed->y0);
 	if (!square->filters->all_are(point_at(patch, needed->x0, needed->y0), patch->stride,
 				      needed->x1 - needed->x0, needed->y1 - needed->y0, colour))
 		return false;
-	for (int y = picture->all.y0; y < picture->all.y1; y++)
-		square->filters->fill(colour, point_at(picture, picture->all.x0, y),
-				      picture->all.x1 - picture->all.x0, square->stream);
+	fill_flat(square, 0, &square->patches[0].all, colour);
 	return true;
 }
 
@@ -389,15 +397,16 @@ static int lay_out_square(struct square *square, int column, int row,
 	return level;
 }
 
-void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_lattices *lattices,
-			   const struct gz_row_filters *filters, int column, int row)
+void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_reconstructed *plane,
+			   int column, int row)
 {
 	uint32_t memory[GZ_PLAN_LAYERS_MAX - 1][PATCH_ROWS * PATCH_STRIDE];
 	struct square square = {
 		.plan = plan,
-		.lattices = lattices,
-		.filters = filters,
+		.lattices = plane->lattices,
+		.filters = plane->filters,
 		.stream = gz_reconstruct_streams(plan),
+		.leaves_empty = plane->leaves_empty,
 	};
 	const int coarsest = lay_out_square(&square, column, row, memory);
 	if (coarsest == 0)
