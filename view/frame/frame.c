@@ -368,12 +368,30 @@ const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 	return &maker->scene;
 }
 
+static bool is_of_values(const struct gz_looked_at *thing)
+{
+	return thing->id != 0 && thing->least != thing->greatest;
+}
+
+/* Forget which values are looked at and raised: by another function, others look alike. */
+static void forget_values(struct gz_frame_maker *maker)
+{
+	const struct gz_interest *interest = &maker->interest;
+	if (is_of_values(&interest->looked_at) || is_of_values(&interest->raised))
+		maker->interest = (struct gz_interest) { 0 };
+	if (raises_values(&maker->raised))
+		maker->raised = (struct gz_raised) { 0 };
+	if (raises_values(&maker->raised_shown))
+		maker->raised_shown = (struct gz_raised) { 0 };
+}
+
 enum gz_result gz_frame_set_transfer(struct gz_frame_maker *maker,
 				     const struct gz_transfer *transfer)
 {
 	drop_spares(maker);
 	maker->scene.transfer = *transfer;
 	maker->transfer_revision++;
+	forget_values(maker);
 	style_raised(maker);
 	maker->any_made = false;
 	const enum gz_result r = show_scene_objects(maker);

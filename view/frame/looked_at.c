@@ -59,9 +59,14 @@ struct gz_looked_at gz_looked_at_find(struct gz_picture_maker *pictures,
 	if (gz_picture_maker_pick(pictures, request, &pick) != GZ_OK)
 		pick.count = 0;
 	const struct gz_object *clear = find_clear_object(objects, count);
-	if (clear && ray_of_place(request, &pick, &ray) &&
-	    gz_section_look(clear->volume, clear->transfer, &ray, &seen) &&
-	    (pick.count == 0 || seen.opacity >= 0.5))
-		return values_seen(clear, &seen);
+	if (clear && ray_of_place(request, &pick, &ray)) {
+		/* Without emphasis: what stands out now would go on to hide what is in front of it.
+		 */
+		struct gz_transfer plain = *clear->transfer;
+		plain.emphasis = (struct gz_transfer_emphasis) { 0 };
+		if (gz_section_look(clear->volume, &plain, &ray, &seen) &&
+		    (pick.count == 0 || seen.opacity >= 0.5))
+			return values_seen(clear, &seen);
+	}
 	return (struct gz_looked_at) { .id = gz_pick_most_seen(&pick) };
 }
