@@ -121,13 +121,13 @@ static enum gz_result prepare_strokes(struct drawing_state *state,
 	if (result == GZ_OK)
 		result = gz_mesh_curvatures(mesh, curvatures);
 	if (result == GZ_OK)
-		result = gz_hatch_directions(mesh, curvatures, PASSES, directions);
+		result = gz_hatch_directions(mesh, curvatures, PASSES, NULL, directions);
 	const int64_t directions_ns = gz_clock_now_ns();
 	for (int layer = 0; layer < 2 && result == GZ_OK; layer++) {
 		if (layer == 1)
 			gz_hatch_cross_directions(mesh, (const float(*)[3])directions, directions);
 		result = gz_hatch_strokes_make(mesh, (const float(*)[3])directions, points,
-					       distance_mm, &state->strokes[layer]);
+					       distance_mm, NULL, &state->strokes[layer]);
 		printf("strokes %zu nodes %zu length %.0f mm\n", state->strokes[layer].stroke_count,
 		       state->strokes[layer].node_count, state->strokes[layer].length_mm);
 	}
@@ -149,7 +149,7 @@ static enum gz_result prepare_points(struct drawing_state *state,
 	const struct gz_mesh_cache_place place = { request->what, "points" };
 	enum gz_result result =
 		gz_cached_points_make(&state->mesh, request->points, is_file ? &place : NULL,
-				      state->workers, log, &points);
+				      state->workers, NULL, log, &points);
 	const int64_t made_ns = gz_clock_now_ns();
 	if (result == GZ_OK)
 		result = gz_stipple_points_make(&state->mesh, &points, &state->points);

@@ -379,17 +379,30 @@ enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
 		       : GZ_ERR_INVAL;
 }
 
-/* Make a picture again until nothing that it lacks is being made any more. */
+/* Make a picture again until nothing that it lacks is being made any more, or nothing of it has
+ * arrived for some time. */
 static enum gz_result make_whole(struct gz_picture_maker *maker,
-				 const struct gz_picture_request *request)
+				 const struct gz_picture_request *request, double wait_s)
 {
 	static const struct timespec pause = { .tv_nsec = 10 * 1000 * 1000 };
 	struct gz_image *image;
 	struct gz_picture_cost cost = { 0 };
 	enum gz_result result = gz_picture_make(maker, request, &image, &cost);
+	int64_t arrived_ns = gz_clock_now_ns();
 	while (result == GZ_OK && cost.stats.bricks_coming > 0) {
+		const uint64_t before = cost.stats.bricks_coming;
 		(void)nanosleep(&pause, NULL);
 		result = gz_picture_make(maker, request, &image, &cost);
+		const int64_t now_ns = gz_clock_now_ns();
+		if (cost.stats.bricks_coming != before)
+			arrived_ns = now_ns;
+		if (result == GZ_OK && gz_ns_to_s(now_ns - arrived_ns) > wait_s) {
+			gz_err(maker->log,
+			       "not printed: what the picture lacks has not arrived for %g s; look "
+			       "whether its files can be read, or try again when it is shown whole",
+			       wait_s);
+			return GZ_ERR_TIMEOUT;
+		}
 	}
 	return result;
 }
@@ -415,7 +428,8 @@ enum gz_result gz_picture_print(struct gz_picture_maker *maker,
 	whole.temporal = NULL;
 	whole.on_device = false;
 	whole.strip.rows = 0;
-	const enum gz_result result = make_whole(maker, &whole);
+	const enum gz_result result =
+		make_whole(maker, &whole, print->wait_s > 0 ? print->wait_s : GZ_PRINT_WAIT_S);
 	return result == GZ_OK ? drawer->ops->print(drawer, print) : result;
 }
 

@@ -164,6 +164,7 @@ enum gz_result gz_picture_maker_pick(struct gz_picture_maker *maker,
  * @retval GZ_ERR_UNSUPPORTED  what is shown is not drawn by marks at all; logged
  * @retval GZ_ERR_INVAL        not drawn by marks with these settings, or a size or ending is not
  *                             valid; logged
+ * @retval GZ_ERR_TIMEOUT  bricks or marks that the picture lacks have not arrived; logged
  * @retval GZ_ERR_IO, GZ_ERR_FULL  the file cannot be written; logged
  * @return otherwise what gz_picture_make() returns
  */

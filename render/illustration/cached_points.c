@@ -67,8 +67,8 @@ static bool read_kept(const struct gz_mesh *mesh, size_t count, const struct kep
 
 enum gz_result gz_cached_points_make(const struct gz_mesh *mesh, size_t count,
 				     const struct gz_mesh_cache_place *place,
-				     struct gz_workers *workers, const struct gz_log *log,
-				     struct gz_mesh_points *out_points)
+				     struct gz_workers *workers, const atomic_bool *stop,
+				     const struct gz_log *log, struct gz_mesh_points *out_points)
 {
 	struct kept_points kept = { 0 };
 	struct gz_mesh_key key;
@@ -81,7 +81,7 @@ enum gz_result gz_cached_points_make(const struct gz_mesh *mesh, size_t count,
 	enum gz_result result = GZ_OK;
 	if (!keeps || gz_mesh_cache_load(place, &key, kept.arrays, 2, log) != GZ_OK ||
 	    !read_kept(mesh, count, &kept, out_points)) {
-		result = gz_mesh_points_make(mesh, count, workers, out_points);
+		result = gz_mesh_points_make(mesh, count, workers, stop, out_points);
 		if (keeps && result == GZ_OK && out_points->count == count) {
 			keep_points(out_points, &kept);
 			/* a failure is logged, and only costs time */

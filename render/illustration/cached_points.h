@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "base/stop.h"
 #include "base/workers.h"
 #include "render/mesh/cache/mesh_cache.h"
 #include "render/mesh/mesh.h"
@@ -21,6 +22,7 @@
  * than 2^24 triangles are not kept.
  *
  * @param place  NULL: nothing is read or written
+ * @param stop   as for gz_mesh_points_make()
  * @param log    may be NULL
  * @param[out] out_points  the same whether read or made; as for gz_mesh_points_make()
  * @return as gz_mesh_points_make()
@@ -29,7 +31,7 @@
  */
 enum gz_result gz_cached_points_make(const struct gz_mesh *mesh, size_t count,
 				     const struct gz_mesh_cache_place *place,
-				     struct gz_workers *workers, const struct gz_log *log,
-				     struct gz_mesh_points *out_points);
+				     struct gz_workers *workers, const atomic_bool *stop,
+				     const struct gz_log *log, struct gz_mesh_points *out_points);
 
 #endif

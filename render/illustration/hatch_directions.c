@@ -132,9 +132,9 @@ static void rescale_tensors(struct tensor_graph *graph)
 	}
 }
 
-static void spread_far(struct tensor_graph *graph, int passes)
+static void spread_far(struct tensor_graph *graph, int passes, const atomic_bool *stop)
 {
-	for (int pass = 0; pass < passes; pass++) {
+	for (int pass = 0; pass < passes && !gz_stop_wanted(stop); pass++) {
 		spread_tensors(graph);
 		rescale_tensors(graph);
 	}
@@ -270,19 +270,19 @@ static void choose_direction(const float own[FIELD_FLOATS], const float cube[FIE
 
 /* Spread over the mesh, and over the cubes from where the mesh left off. */
 static void spread_both(struct tensor_graph *mesh_graph, struct tensor_graph *cube_graph,
-			const uint32_t *cubes, int passes)
+			const uint32_t *cubes, int passes, const atomic_bool *stop)
 {
-	spread_far(mesh_graph, passes);
+	spread_far(mesh_graph, passes, stop);
 	for (size_t i = 0; i < mesh_graph->count; i++)
 		for (int k = 0; k < FIELD_FLOATS; k++)
 			cube_graph->now[cubes[i]][k] += mesh_graph->now[i][k];
 	rescale_tensors(cube_graph);
-	spread_far(cube_graph, passes);
+	spread_far(cube_graph, passes, stop);
 }
 
 enum gz_result gz_hatch_directions(const struct gz_mesh *mesh,
 				   const struct gz_curvature *curvatures, int passes,
-				   float (*out_directions)[3])
+				   const atomic_bool *stop, float (*out_directions)[3])
 {
 	if (passes < 0 || passes > PASSES_MAX)
 		return GZ_ERR_INVAL;
@@ -303,8 +303,8 @@ enum gz_result gz_hatch_directions(const struct gz_mesh *mesh,
 		coarse.triangles = (const uint32_t(*)[3])triangles;
 		for (size_t i = 0; i < own.count; i++)
 			start_tensor(&curvatures[i], mesh->normals[i], flat, own.now[i]);
-		spread_both(&own, &coarse, cubes, passes);
-		for (size_t i = 0; i < own.count; i++)
+		spread_both(&own, &coarse, cubes, passes, stop);
+		for (size_t i = 0; i < own.count && !gz_stop_wanted(stop); i++)
 			choose_direction(own.now[i], coarse.now[cubes[i]], mesh->normals[i],
 					 out_directions[i]);
 	}
@@ -312,5 +312,7 @@ enum gz_result gz_hatch_directions(const struct gz_mesh *mesh,
 	free_fields(&coarse);
 	free(cubes);
 	free(triangles);
-	return complete ? GZ_OK : GZ_ERR_NO_MEM;
+	if (!complete)
+		return GZ_ERR_NO_MEM;
+	return gz_stop_wanted(stop) ? GZ_ERR_CANCELLED : GZ_OK;
 }

@@ -42,6 +42,7 @@ struct tracing {
 	struct gz_hatch_stroke *strokes;
 	size_t stroke_count, stroke_capacity;
 	struct gz_point_grid grid;
+	const atomic_bool *stop; /* NULL: nothing ends it */
 	double distance;
 	double step;   /* between the nodes of a stroke, mm: the last distance */
 	int stride;    /* every so many nodes of a stroke keep others away, for less work */
@@ -465,9 +466,12 @@ static enum gz_result trace_step(struct tracing *tracing, const struct gz_mesh_p
 					  &tracing->nodes[i].next);
 	const double wanted = 4 * cells + 64;
 	const size_t count = wanted < (double)points->count ? (size_t)wanted : points->count;
-	for (size_t rank = 0; rank < count && tracing->node_count < GZ_HATCH_NODES_MAX; rank++)
+	for (size_t rank = 0; rank < count && tracing->node_count < GZ_HATCH_NODES_MAX; rank++) {
+		if (gz_stop_wanted(tracing->stop))
+			return GZ_ERR_CANCELLED;
 		if (!trace_stroke(tracing, &points->points[rank], rank))
 			return GZ_ERR_NO_MEM;
+	}
 	return GZ_OK;
 }
 
@@ -532,7 +536,7 @@ static enum gz_result trace_strokes(struct tracing *tracing, const struct gz_mes
 
 enum gz_result gz_hatch_strokes_make(const struct gz_mesh *mesh, const float (*directions)[3],
 				     const struct gz_mesh_points *points, double distance_mm,
-				     struct gz_hatch_strokes *out_strokes)
+				     const atomic_bool *stop, struct gz_hatch_strokes *out_strokes)
 {
 	if (!(distance_mm > 0) || !isfinite(distance_mm))
 		return GZ_ERR_INVAL;
@@ -540,7 +544,9 @@ enum gz_result gz_hatch_strokes_make(const struct gz_mesh *mesh, const float (*d
 		*out_strokes = (struct gz_hatch_strokes) { 0 };
 		return GZ_OK;
 	}
-	struct tracing tracing = { .mesh = mesh, .directions = directions, .step = distance_mm };
+	struct tracing tracing = {
+		.mesh = mesh, .directions = directions, .stop = stop, .step = distance_mm
+	};
 	enum gz_result result = trace_strokes(&tracing, points, distance_mm);
 	if (result == GZ_OK)
 		result = hand_strokes_over(&tracing, points->area_mm2, out_strokes);

@@ -19,6 +19,7 @@
 #include <stdint.h>
 
 #include "base/result.h"
+#include "base/stop.h"
 #include "render/mesh/mesh.h"
 #include "render/mesh/mesh_curvature.h"
 #include "render/mesh/mesh_points.h"
@@ -63,14 +64,16 @@ struct gz_hatch_strokes {
  *
  * @param curvatures  of each vertex of @p mesh, by gz_mesh_curvatures()
  * @param passes      how far directions spread and are smoothed, in edges, 0 to 1000
+ * @param stop        ends it early (base/stop.h); NULL: nothing does
  * @param[out] out_directions  of each vertex: a unit vector across the normal, of either sign, or 0
  *                             where none came; written on GZ_OK
  * @retval GZ_ERR_INVAL   @p passes is out of range; not logged
+ * @retval GZ_ERR_CANCELLED  it was ended
  * @retval GZ_ERR_NO_MEM  not logged
  */
 enum gz_result gz_hatch_directions(const struct gz_mesh *mesh,
 				   const struct gz_curvature *curvatures, int passes,
-				   float (*out_directions)[3]);
+				   const atomic_bool *stop, float (*out_directions)[3]);
 
 /** Turn directions by a right angle about the normals, for a second layer that crosses the first.
  */
@@ -86,15 +89,17 @@ void gz_hatch_cross_directions(const struct gz_mesh *mesh, const float (*directi
  *                     distance, or from all if there are fewer
  * @param distance_mm  of the last step, above 0; the mean distance of all strokes is about 1.1 of
  *                     it
+ * @param stop         ends it early (base/stop.h); NULL: nothing does
  * @param[out] out_strokes  written on GZ_OK; the caller frees it with gz_hatch_strokes_free()
  * @retval GZ_ERR_INVAL   @p distance_mm is out of range; not logged
+ * @retval GZ_ERR_CANCELLED  it was ended
  * @retval GZ_ERR_NO_MEM  not logged
  *
  * If strokes reach GZ_HATCH_NODES_MAX corners, the others are left out.
  */
 enum gz_result gz_hatch_strokes_make(const struct gz_mesh *mesh, const float (*directions)[3],
 				     const struct gz_mesh_points *points, double distance_mm,
-				     struct gz_hatch_strokes *out_strokes);
+				     const atomic_bool *stop, struct gz_hatch_strokes *out_strokes);
 
 /** Free what it holds and zero it. */
 void gz_hatch_strokes_free(struct gz_hatch_strokes *strokes);

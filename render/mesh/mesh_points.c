@@ -28,7 +28,8 @@ struct spread_point {
 struct spread {
 	const struct gz_mesh *mesh;
 	struct gz_workers *workers;
-	double *area_sums; /* of triangles up to each */
+	const atomic_bool *stop; /* NULL: nothing ends it */
+	double *area_sums;       /* of triangles up to each */
 	double area;
 	struct spread_point *points; /* by rank */
 	size_t count, wanted;
@@ -184,6 +185,9 @@ static void throw_part(void *user, size_t part, int worker)
 	const size_t begin = part * PART_DARTS;
 	const size_t end = begin + PART_DARTS < spread->darts ? begin + PART_DARTS : spread->darts;
 	struct spread_point *kept = spread->free_darts + begin;
+	spread->free_counts[part] = 0;
+	if (gz_stop_wanted(spread->stop))
+		return;
 	const double area_a_dart = spread->area / (double)spread->darts;
 	size_t triangle = find_triangle(spread, (double)begin * area_a_dart), count = 0;
 	for (size_t i = begin; i < end; i++) {
@@ -250,6 +254,8 @@ static enum gz_result throw_darts(struct spread *spread)
 	else
 		for (size_t part = 0; part < parts; part++)
 			throw_part(spread, part, 0);
+	if (gz_stop_wanted(spread->stop))
+		return GZ_ERR_CANCELLED;
 	const size_t count = gather_darts(spread, parts);
 	shuffle_darts(spread->free_darts, count, spread->seed);
 	for (size_t i = 0; i < count && spread->count < spread->wanted; i++)
@@ -313,7 +319,8 @@ static enum gz_result hand_over(const struct spread *spread, struct gz_mesh_poin
 }
 
 enum gz_result gz_mesh_points_make(const struct gz_mesh *mesh, size_t count,
-				   struct gz_workers *workers, struct gz_mesh_points *out_points)
+				   struct gz_workers *workers, const atomic_bool *stop,
+				   struct gz_mesh_points *out_points)
 {
 	if (count > GZ_MESH_POINTS_MAX)
 		return GZ_ERR_INVAL;
@@ -321,7 +328,7 @@ enum gz_result gz_mesh_points_make(const struct gz_mesh *mesh, size_t count,
 		*out_points = (struct gz_mesh_points) { 0 };
 		return GZ_OK;
 	}
-	struct spread spread = { .mesh = mesh, .workers = workers, .wanted = count };
+	struct spread spread = { .mesh = mesh, .workers = workers, .stop = stop, .wanted = count };
 	enum gz_result result = GZ_ERR_NO_MEM;
 	spread.area_sums = malloc(mesh->triangle_count * sizeof *spread.area_sums);
 	spread.points = malloc(count * sizeof *spread.points);

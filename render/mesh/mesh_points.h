@@ -20,6 +20,7 @@
 #include <stdint.h>
 
 #include "base/result.h"
+#include "base/stop.h"
 #include "base/workers.h"
 #include "render/mesh/mesh.h"
 
@@ -51,14 +52,17 @@ struct gz_mesh_points {
  *                 triangles of some area, otherwise there are none
  * @param count    0 to GZ_MESH_POINTS_MAX
  * @param workers  share the work; NULL for the calling thread alone
+ * @param stop     ends it early (base/stop.h); NULL: nothing does
  * @param[out] out_points  written on GZ_OK; the caller frees it with gz_mesh_points_free()
  * @retval GZ_ERR_INVAL   @p count is above GZ_MESH_POINTS_MAX; not logged
+ * @retval GZ_ERR_CANCELLED  it was ended
  * @retval GZ_ERR_NO_MEM  not logged
  *
  * Memory: about 140 bytes for each point while it works, 12 afterwards; 8 for each triangle.
  */
 enum gz_result gz_mesh_points_make(const struct gz_mesh *mesh, size_t count,
-				   struct gz_workers *workers, struct gz_mesh_points *out_points);
+				   struct gz_workers *workers, const atomic_bool *stop,
+				   struct gz_mesh_points *out_points);
 
 /** Where a point lies, mm. */
 void gz_mesh_point_place(const struct gz_mesh *mesh, const struct gz_mesh_point *point,

@@ -144,12 +144,17 @@ struct gz_pick {
 /** The object that is seen most at a place; 0: none. */
 uint32_t gz_pick_most_seen(const struct gz_pick *pick);
 
+/** How long a print waits while nothing arrives, s. Chosen: marks of large meshes take as long. */
+#define GZ_PRINT_WAIT_S 60
+
 /** A drawing for print. */
 struct gz_print {
 	/** Its ending says what it is: .svg, marks in millimetres, or .png. Borrowed. */
 	const char *path;
 	double width_mm; /**< of the picture on paper, above 0 */
 	double dpi;      /**< .png: pixels of 25.4 mm, above 0 */
+	double wait_s;   /**< how long nothing of what the picture lacks may arrive before it is
+			      given up; 0: GZ_PRINT_WAIT_S */
 };
 
 struct gz_drawer;

@@ -40,10 +40,10 @@ static enum gz_result trace_body(enum drawn_body body, struct gz_hatch_strokes *
 	if (!directions)
 		return GZ_ERR_NO_MEM;
 	make_directions(mesh, directions);
-	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, &points);
+	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, NULL, &points);
 	if (result == GZ_OK)
 		result = gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points,
-					       DISTANCE_MM, out_strokes);
+					       DISTANCE_MM, NULL, out_strokes);
 	free(directions);
 	if (result == GZ_OK)
 		gz_mesh_points_free(&points);
@@ -345,13 +345,13 @@ static void directions_of_a_tube_run_along_it(void **state)
 	for (size_t i = 0; i < mesh->vertex_count; i++)
 		if (i % 3)
 			curvatures[i] = (struct gz_curvature) { 0.5F, 0, { i % 2 ? 1 : -1, 0, 0 } };
-	assert_int_equal(gz_hatch_directions(mesh, curvatures, 10, directions), GZ_OK);
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 10, NULL, directions), GZ_OK);
 	for (size_t i = 0; i < mesh->vertex_count; i++)
 		assert_float_equal(fabsf(directions[i][1]), 1, 1e-4);
 	gz_hatch_cross_directions(mesh, (const float(*)[3])directions, directions);
 	for (size_t i = 0; i < mesh->vertex_count; i++)
 		assert_float_equal(fabsf(directions[i][0]), 1, 1e-4);
-	assert_int_equal(gz_hatch_directions(mesh, curvatures, -1, directions), GZ_ERR_INVAL);
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, -1, NULL, directions), GZ_ERR_INVAL);
 	free(curvatures);
 	free(directions);
 }
@@ -372,7 +372,7 @@ static void directions_of_noise_are_those_around_it(void **state)
 			0.5F, 0, { (float)cos(angle), (float)sin(angle), 0 }
 		};
 	}
-	assert_int_equal(gz_hatch_directions(mesh, curvatures, 60, directions), GZ_OK);
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 60, NULL, directions), GZ_OK);
 	double least = 1;
 	for (size_t i = 0; i < mesh->vertex_count; i++)
 		least = fmin(least, fabs((double)directions[i][1]));
@@ -381,7 +381,7 @@ static void directions_of_noise_are_those_around_it(void **state)
 	/* a vertex without a normal has no direction, and one out of this world does no harm */
 	memset(mesh->normals[7], 0, sizeof mesh->normals[7]);
 	mesh->positions[7][0] = 1e37F;
-	assert_int_equal(gz_hatch_directions(mesh, curvatures, 1, directions), GZ_OK);
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 1, NULL, directions), GZ_OK);
 	for (int axis = 0; axis < 3; axis++)
 		assert_true(directions[7][axis] == 0 && isfinite(directions[8][axis]));
 	memcpy(mesh->normals[7], mesh->normals[8], sizeof mesh->normals[7]);
@@ -484,17 +484,40 @@ static void mesh_without_directions_has_no_strokes(void **state)
 	struct gz_hatch_strokes strokes;
 	float(*directions)[3] = calloc(mesh->vertex_count, sizeof *directions);
 	assert_non_null(directions);
-	assert_int_equal(gz_mesh_points_make(mesh, 100, NULL, &points), GZ_OK);
+	assert_int_equal(gz_mesh_points_make(mesh, 100, NULL, NULL, &points), GZ_OK);
 	directions[0][0] = NAN;
-	assert_int_equal(
-		gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 5, &strokes),
-		GZ_OK);
+	assert_int_equal(gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 5,
+					       NULL, &strokes),
+			 GZ_OK);
 	assert_int_equal(strokes.stroke_count, 0);
 	gz_hatch_strokes_free(&strokes);
-	assert_int_equal(
-		gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 0, &strokes),
-		GZ_ERR_INVAL);
+	assert_int_equal(gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 0,
+					       NULL, &strokes),
+			 GZ_ERR_INVAL);
 	gz_mesh_points_free(&points);
+	free(directions);
+}
+
+/* What is stopped traces no strokes and finds no directions. */
+static void stopped_work_is_cancelled(void **state)
+{
+	(void)state;
+	const struct gz_mesh *mesh = &meshes[DRAWN_BOARD];
+	const atomic_bool stop = true;
+	struct gz_mesh_points points;
+	struct gz_hatch_strokes strokes = { 0 };
+	struct gz_curvature *curvatures = calloc(mesh->vertex_count, sizeof *curvatures);
+	float(*directions)[3] = calloc(mesh->vertex_count, sizeof *directions);
+	assert_true(directions && curvatures);
+	assert_int_equal(gz_mesh_points_make(mesh, 100, NULL, NULL, &points), GZ_OK);
+	assert_int_equal(gz_hatch_directions(mesh, curvatures, 10, &stop, directions),
+			 GZ_ERR_CANCELLED);
+	assert_int_equal(gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points, 5,
+					       &stop, &strokes),
+			 GZ_ERR_CANCELLED);
+	assert_null(strokes.nodes);
+	gz_mesh_points_free(&points);
+	free(curvatures);
 	free(directions);
 }
 
@@ -515,6 +538,7 @@ TEST_SUITE(hatch)
 		cmocka_unit_test(directions_of_a_tube_run_along_it),
 		cmocka_unit_test(directions_of_noise_are_those_around_it),
 		cmocka_unit_test(mesh_without_directions_has_no_strokes),
+		cmocka_unit_test(stopped_work_is_cancelled),
 		cmocka_unit_test(strokes_are_kept),
 		cmocka_unit_test(kept_floats_that_are_no_strokes_are_refused),
 	};

@@ -2,11 +2,14 @@
 #include "suite.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/workers.h"
 #include "mesh_fields.h"
+#include "mesh_shapes.h"
 #include "render/mesh/isosurface.h"
 #include "render/mesh/mesh_points.h"
 
@@ -54,7 +57,7 @@ static struct gz_mesh squares(size_t count)
 static struct gz_mesh_points points_of(const struct gz_mesh *mesh, size_t count)
 {
 	struct gz_mesh_points points;
-	assert_int_equal(gz_mesh_points_make(mesh, count, NULL, &points), GZ_OK);
+	assert_int_equal(gz_mesh_points_make(mesh, count, NULL, NULL, &points), GZ_OK);
 	assert_int_equal(points.count, count);
 	return points;
 }
@@ -288,7 +291,7 @@ static void points_are_the_same_for_any_number_of_threads(void **state)
 	struct gz_mesh_points alone = points_of(&mesh, POINTS), shared;
 	struct gz_workers *workers;
 	assert_int_equal(gz_workers_create(3, &workers), GZ_OK);
-	assert_int_equal(gz_mesh_points_make(&mesh, POINTS, workers, &shared), GZ_OK);
+	assert_int_equal(gz_mesh_points_make(&mesh, POINTS, workers, NULL, &shared), GZ_OK);
 	assert_int_equal(shared.count, alone.count);
 	assert_memory_equal(shared.points, alone.points, POINTS * sizeof *alone.points);
 	gz_workers_destroy(&workers);
@@ -304,12 +307,12 @@ static void mesh_without_area_has_no_points(void **state)
 	struct gz_mesh_points points;
 	for (size_t i = 0; i < 4; i++)
 		mesh.positions[i][1] = 0; /* all on a line */
-	assert_int_equal(gz_mesh_points_make(&mesh, 10, NULL, &points), GZ_OK);
+	assert_int_equal(gz_mesh_points_make(&mesh, 10, NULL, NULL, &points), GZ_OK);
 	assert_int_equal(points.count, 0);
 	assert_null(points.points);
 	gz_mesh_free(&mesh);
 	const struct gz_mesh empty = { 0 };
-	assert_int_equal(gz_mesh_points_make(&empty, 10, NULL, &points), GZ_OK);
+	assert_int_equal(gz_mesh_points_make(&empty, 10, NULL, NULL, &points), GZ_OK);
 	assert_int_equal(points.count, 0);
 }
 
@@ -332,8 +335,41 @@ static void more_points_than_allowed_are_refused(void **state)
 	(void)state;
 	struct gz_mesh mesh = squares(1);
 	struct gz_mesh_points points;
-	assert_int_equal(gz_mesh_points_make(&mesh, GZ_MESH_POINTS_MAX + 1, NULL, &points),
+	assert_int_equal(gz_mesh_points_make(&mesh, GZ_MESH_POINTS_MAX + 1, NULL, NULL, &points),
 			 GZ_ERR_INVAL);
+	gz_mesh_free(&mesh);
+}
+
+static void *stop_soon(void *user)
+{
+	const struct timespec soon = { .tv_nsec = 20 * 1000 * 1000 };
+	(void)nanosleep(&soon, NULL);
+	atomic_store((atomic_bool *)user, true);
+	return NULL;
+}
+
+/* As many points as there can be take many seconds. */
+static void long_work_ends_when_it_is_stopped(void **state)
+{
+	(void)state;
+	struct gz_mesh mesh = mesh_ball(30, 4);
+	struct gz_mesh_points points = { 0 };
+	struct gz_workers *workers = NULL;
+	pthread_t thread;
+	atomic_bool stop = false;
+	assert_int_equal(gz_workers_create(2, &workers), GZ_OK);
+	assert_int_equal(pthread_create(&thread, NULL, stop_soon, &stop), 0);
+	assert_int_equal(gz_mesh_points_make(&mesh, GZ_MESH_POINTS_MAX, workers, &stop, &points),
+			 GZ_ERR_CANCELLED);
+	(void)pthread_join(thread, NULL);
+	assert_null(points.points);
+	/* One that is stopped before it begins does nothing. */
+	assert_int_equal(gz_mesh_points_make(&mesh, 10, NULL, &stop, &points), GZ_ERR_CANCELLED);
+	atomic_store(&stop, false);
+	assert_int_equal(gz_mesh_points_make(&mesh, 10, NULL, &stop, &points), GZ_OK);
+	assert_int_equal(points.count, 10);
+	gz_mesh_points_free(&points);
+	gz_workers_destroy(&workers);
 	gz_mesh_free(&mesh);
 }
 
@@ -351,6 +387,7 @@ TEST_SUITE(mesh_points)
 		cmocka_unit_test(mesh_without_area_has_no_points),
 		cmocka_unit_test(triangles_without_area_get_no_points),
 		cmocka_unit_test(more_points_than_allowed_are_refused),
+		cmocka_unit_test(long_work_ends_when_it_is_stopped),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -151,6 +151,115 @@ static void lost_context_is_returned_if_the_request_says_so(void **state)
 	}
 }
 
+/* A drawer whose pictures lack something. */
+struct lacking_drawer {
+	struct gz_drawer base;
+	uint64_t coming; /* one fewer with each picture, but for the last */
+	int drawn, printed;
+};
+
+static struct lacking_drawer lacking;
+
+static enum gz_result lacking_show(struct gz_drawer *drawer, const struct gz_object *objects,
+				   size_t count)
+{
+	(void)drawer, (void)objects, (void)count;
+	return GZ_OK;
+}
+
+static enum gz_result lacking_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
+				   struct gz_image *image, struct gz_frame_stats *out_stats)
+{
+	struct lacking_drawer *self = (struct lacking_drawer *)drawer;
+	self->drawn++;
+	self->coming -= self->coming > 1;
+	if (out_stats)
+		*out_stats = (struct gz_frame_stats) { .bricks_coming = self->coming };
+	return gz_image_resize(image, shot->plan->width, shot->plan->height);
+}
+
+static enum gz_result lacking_print(struct gz_drawer *drawer, const struct gz_print *print)
+{
+	(void)print;
+	((struct lacking_drawer *)drawer)->printed++;
+	return GZ_OK;
+}
+
+static bool lacking_keeps(const struct gz_drawer *drawer, const struct gz_shot *shot)
+{
+	(void)drawer, (void)shot;
+	return false;
+}
+
+static unsigned lacking_texture(const struct gz_drawer *drawer)
+{
+	(void)drawer;
+	return 0;
+}
+
+static const char *lacking_name(const struct gz_drawer *drawer)
+{
+	(void)drawer;
+	return "cpu";
+}
+
+static void lacking_destroy(struct gz_drawer *drawer)
+{
+	(void)drawer;
+}
+
+static const struct gz_drawer_ops lacking_ops = {
+	.show = lacking_show,
+	.draw = lacking_draw,
+	.print = lacking_print,
+	.keeps_on_device = lacking_keeps,
+	.picture_texture = lacking_texture,
+	.backend = lacking_name,
+	.describe = lacking_name,
+	.destroy = lacking_destroy,
+};
+
+static enum gz_result lacking_check(const char *backend, const struct gz_backend_params *params,
+				    const struct gz_log *log)
+{
+	(void)backend, (void)params, (void)log;
+	return GZ_OK;
+}
+
+static enum gz_result lacking_create(const char *backend, const struct gz_backend_params *params,
+				     const struct gz_log *log, struct gz_drawer **out_drawer)
+{
+	(void)backend, (void)params, (void)log;
+	*out_drawer = &lacking.base;
+	return GZ_OK;
+}
+
+/* Bricks that cannot be read never come; a print gives them up when nothing arrives any more. */
+static void print_gives_up_what_does_not_arrive(void **state)
+{
+	(void)state;
+	struct gz_technique technique = *gz_techniques[0];
+	const struct gz_picture_maker_params params = { .backend = "cpu" };
+	const struct gz_print print = { "never.svg", 100, 300, 0.2 };
+	struct set_up all;
+	technique.check = lacking_check;
+	technique.create = lacking_create;
+	technique.bind = gz_techniques[0]->bind;
+	lacking = (struct lacking_drawer) { .base = { &lacking_ops }, .coming = 30 };
+	set_up(&all);
+	all.object.technique = &technique;
+	assert_int_equal(show(&all, &params), GZ_OK);
+	assert_int_equal(gz_picture_print(all.maker, &all.request, &print), GZ_ERR_TIMEOUT);
+	/* It waited as long as something arrived, 10 ms each, and then a fifth of a second. */
+	assert_true(lacking.coming == 1 && lacking.drawn >= 30);
+	assert_int_equal(lacking.printed, 0);
+	assert_non_null(strstr(all.heard.text, "not printed"));
+	lacking.coming = 0;
+	assert_int_equal(gz_picture_print(all.maker, &all.request, &print), GZ_OK);
+	assert_int_equal(lacking.printed, 1);
+	take_down(&all);
+}
+
 static void auto_takes_the_cpu_without_a_gpu_and_logs_nothing(void **state)
 {
 	(void)state;
@@ -317,6 +426,7 @@ TEST_SUITE(picture_maker)
 	const struct CMUnitTest on_gl[] = {
 		cmocka_unit_test(cpu_takes_over_after_a_lost_context),
 		cmocka_unit_test(lost_context_is_returned_if_the_request_says_so),
+		cmocka_unit_test(print_gives_up_what_does_not_arrive),
 		cmocka_unit_test(auto_takes_the_cpu_without_a_gpu_and_logs_nothing),
 		cmocka_unit_test(graphics_memory_too_small_for_the_volume_shows_bricks),
 		cmocka_unit_test(invalid_request_does_not_switch_to_the_cpu),

@@ -29,7 +29,7 @@ static int make_points(void **state)
 	(void)state;
 	for (int body = 0; body < 2; body++) {
 		struct gz_mesh mesh = drawn_mesh((enum drawn_body)body);
-		if (gz_mesh_points_make(&mesh, POINTS, NULL, &made_points[body]) != GZ_OK ||
+		if (gz_mesh_points_make(&mesh, POINTS, NULL, NULL, &made_points[body]) != GZ_OK ||
 		    gz_stipple_points_make(&mesh, &made_points[body], &points_of[body]) != GZ_OK)
 			return -1;
 		gz_mesh_free(&mesh);
@@ -448,7 +448,7 @@ static struct gz_stipple_points valley_points(void)
 		memcpy(mesh.normals[i], (const float[3]) { 0, 0, 1 }, sizeof mesh.normals[i]);
 	}
 	memcpy(mesh.triangles, triangles, sizeof triangles);
-	assert_int_equal(gz_mesh_points_make(&mesh, VALLEY_POINTS, NULL, &points), GZ_OK);
+	assert_int_equal(gz_mesh_points_make(&mesh, VALLEY_POINTS, NULL, NULL, &points), GZ_OK);
 	assert_int_equal(gz_stipple_points_make(&mesh, &points, &valley), GZ_OK);
 	assert_int_equal(valley.cluster_count, 1);
 	gz_mesh_points_free(&points);
@@ -699,9 +699,9 @@ static void points_are_kept(void **state)
 	struct gz_mesh_points made, read, other;
 	const struct gz_mesh_cache_place place = { NULL, "points" };
 	(void)kept_files_open();
-	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &made), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, NULL, &made), GZ_OK);
 	assert_int_equal(kept_files_count(), 1);
-	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, NULL, &read), GZ_OK);
 	assert_int_equal(read.count, 500);
 	assert_memory_equal(read.points, made.points, 500 * sizeof *made.points);
 	assert_true(read.area_mm2 == made.area_mm2);
@@ -712,16 +712,17 @@ static void points_are_kept(void **state)
 	const struct gz_mesh_cache_array arrays[2] = { { floats, 3 * 500 }, { area, 3 } };
 	assert_int_equal(gz_mesh_key_make(&mesh, "mesh points 1, 500", &key), GZ_OK);
 	assert_int_equal(gz_mesh_cache_store(&place, &key, arrays, 2, NULL), GZ_OK);
-	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, NULL, &read), GZ_OK);
 	assert_true(read.area_mm2 == 7.5);
 	gz_mesh_points_free(&read);
 	/* but a triangle that the mesh lacks is not, and another mesh has another key */
 	floats[3] = (float)mesh.triangle_count;
 	assert_int_equal(gz_mesh_cache_store(&place, &key, arrays, 2, NULL), GZ_OK);
-	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &read), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, NULL, &read), GZ_OK);
 	assert_memory_equal(read.points, made.points, 500 * sizeof *made.points);
 	mesh.positions[0][0] += 1;
-	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, &other), GZ_OK);
+	assert_int_equal(gz_cached_points_make(&mesh, 500, &place, NULL, NULL, NULL, &other),
+			 GZ_OK);
 	assert_true(other.area_mm2 != made.area_mm2);
 	gz_mesh_points_free(&read);
 	gz_mesh_points_free(&made);

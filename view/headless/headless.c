@@ -351,7 +351,7 @@ static enum gz_result print_drawing(struct headless *self, const struct gz_frame
 				    int frame)
 {
 	const struct gz_view_options *options = self->options;
-	const struct gz_print print = { options->print, options->print_mm, options->print_dpi };
+	const struct gz_print print = { options->print, options->print_mm, options->print_dpi, 0 };
 	if (!options->print[0] || frame != options->frames - 1)
 		return GZ_OK;
 	return gz_frame_print(self->maker, request, &print);

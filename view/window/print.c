@@ -72,7 +72,7 @@ static void ask_for_print_path(struct gz_window *window)
 static enum gz_result write_print(struct gz_window *window, const char *path)
 {
 	const struct gz_window_print *self = window->print;
-	const struct gz_print print = { path, self->width_mm, self->dpi };
+	const struct gz_print print = { path, self->width_mm, self->dpi, 0 };
 	const struct gz_frame_request request = {
 		.settings = &window->settings,
 		.display = &window->shown_display,

@@ -39,7 +39,7 @@ static enum gz_result spread_points(const struct gz_marks_order *order, struct g
 	char ending[ENDING_SIZE];
 	const struct gz_mesh_cache_place place = place_of(task, "points", ending);
 	return gz_cached_points_make(&task->mesh, task->points, task->keeps ? &place : NULL,
-				     workers, order->log, out_points);
+				     workers, &order->stopped, order->log, out_points);
 }
 
 static enum gz_result make_points(const struct gz_marks_order *order, struct gz_marks_task *task,
@@ -103,8 +103,8 @@ static enum gz_result trace_strokes(const struct gz_marks_order *order, struct g
 		gz_hatch_cross_directions(mesh, directions, around);
 		directions = (const float(*)[3])around;
 	}
-	const enum gz_result result =
-		gz_hatch_strokes_make(mesh, directions, &task->starts, distance_mm, strokes);
+	const enum gz_result result = gz_hatch_strokes_make(mesh, directions, &task->starts,
+							    distance_mm, &order->stopped, strokes);
 	free(around);
 	if (result == GZ_OK && task->keeps) {
 		char ending[ENDING_SIZE];
@@ -129,8 +129,9 @@ static void find_directions_part(void *user, size_t part, int worker)
 	struct gz_marks_task *task = &order->tasks[part];
 	(void)worker;
 	if (lacks_strokes(task) && !atomic_load(&order->stopped))
-		task->results[0] = gz_hatch_directions(&task->mesh, task->curvatures,
-						       DIRECTION_PASSES, task->directions);
+		task->results[0] =
+			gz_hatch_directions(&task->mesh, task->curvatures, DIRECTION_PASSES,
+					    &order->stopped, task->directions);
 }
 
 static void trace_part(void *user, size_t part, int worker)
@@ -185,7 +186,7 @@ enum gz_result gz_marks_order_make(struct gz_marks_order *order, struct gz_worke
 	     i++)
 		if (order->tasks[i].kind == GZ_DRAWING_HATCHES)
 			order->tasks[i].made.strokes_for = order->in_all;
-	return result;
+	return result == GZ_ERR_CANCELLED ? GZ_OK : result;
 }
 
 void gz_marks_order_free(struct gz_marks_order *order)

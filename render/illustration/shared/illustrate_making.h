@@ -57,7 +57,7 @@ struct gz_marks_order {
 	size_t count;
 	struct gz_marks_task *tasks; /**< owned */
 	bool owns_meshes;
-	atomic_bool stopped; /**< what is not begun is left out */
+	atomic_bool stopped; /**< what is not made yet is left out */
 };
 
 /** Carry an order out. The same marks for any number of threads.
