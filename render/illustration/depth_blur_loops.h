@@ -15,6 +15,7 @@
  */
 enum { BLUR_COLUMNS = 64, BLUR_LANES = 16, BLUR_VECTORS = BLUR_COLUMNS / BLUR_LANES };
 
+/* Columns that are summed up together. */
 typedef float blur_lanes __attribute__((vector_size(BLUR_LANES * sizeof(float))));
 
 /* An index of a plane whose border repeats. */

@@ -102,6 +102,7 @@ static inline void fade_of_lines(const struct gz_shading_layers *layers,
 		fade[i] = 1 - fade[i];
 }
 
+/* Lines of pixels of one object. */
 static inline void draw_span_lines(const struct gz_shading_layers *layers,
 				   const struct gz_shading_weights *weights, size_t begin,
 				   size_t count, float *map)

@@ -10,6 +10,7 @@
 
 #include "render/illustration/shading_parameters.h"
 
+/* A number cut to a range. */
 static inline float clamp_between(float value, float least, float most)
 {
 	value = value < least ? least : value;

@@ -35,6 +35,7 @@ struct tile_row {
 	float edge[TILE_COLUMNS], shadow[TILE_COLUMNS], apart[TILE_COLUMNS];
 };
 
+/* The place of the tile whose first pixel is (x, y). */
 static inline struct tile_place place_of_tile(const struct gz_shading_frame *frame, int x, int y)
 {
 	const int columns = frame->width - x, rows = frame->height - y;
@@ -42,6 +43,7 @@ static inline struct tile_place place_of_tile(const struct gz_shading_frame *fra
 				     rows < GZ_SHADING_TILE_ROWS ? rows : GZ_SHADING_TILE_ROWS };
 }
 
+/* The number of a pixel in a plane. */
 static inline size_t pixel_at(const struct gz_shading_frame *frame, int x, int y)
 {
 	return (size_t)y * (size_t)frame->width + (size_t)x;
@@ -100,6 +102,7 @@ static inline void fill_border_row(const struct gz_shading_shared *shared, int x
 	share_depth(words, ids, WINDOW_COLUMNS, &shared->range, depth);
 }
 
+/* Ids and depth of a tile and what surrounds it; beyond the picture its border repeats. */
 static inline void fill_window(const struct gz_shading_shared *shared,
 			       const struct tile_place *place, struct gz_line_window *window)
 {
@@ -191,6 +194,7 @@ struct tile_lines {
 	const float *strong, *thin;
 };
 
+/* Find the lines of a tile whose window is filled. */
 static inline struct tile_lines fill_lines(const struct gz_shading_shared *shared, int rows,
 					   struct gz_shading_tile *tile)
 {
@@ -206,6 +210,7 @@ static inline struct tile_lines fill_lines(const struct gz_shading_shared *share
 	return (struct tile_lines) { tile->strong, tile->thin };
 }
 
+/* Write what is wanted of a row, from number @p to on in the planes. */
 static inline void write_row(const struct gz_shading_shared *shared, size_t to, int columns,
 			     const float *map, const float *apart)
 {

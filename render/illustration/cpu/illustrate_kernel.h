@@ -126,6 +126,7 @@ static inline void clear_packet(const struct gz_illustrate_tile *restrict tile,
 	memset(packet->hit.hit.Ng_z, 0, sizeof packet->hit.hit.Ng_z);
 }
 
+/* Set up the rays of a tile, cut to the clip region. */
 static inline void aim_packet(const struct gz_illustrate_cast *cast,
 			      const struct gz_illustrate_tile *tile,
 			      struct illustrate_packet *packet)
@@ -161,6 +162,7 @@ static inline void aim_packet(const struct gz_illustrate_cast *cast,
 	}
 }
 
+/* A mean by shares that add up to 1. */
 static inline float mean_of(const float shares[3], float a, float b, float c)
 {
 	return shares[0] * a + shares[1] * b + shares[2] * c;
@@ -353,7 +355,7 @@ static inline void shade_lanes(const struct gz_illustrate_cast *cast,
 					    weights->curvature,     weights->plain_light };
 	float sum = 0;
 	for (int i = 0; i < PARAMETERS_MAX; i++) {
-		parameters[i] = (struct gz_weighted_parameter) { values[i], all[i] };
+		parameters[i] = (struct gz_weighted_parameter) { &values[i][0], all[i] };
 		sum += all[i];
 	}
 	for (int level = 0; level < GZ_SHADING_LEVELS; level++)
@@ -377,6 +379,7 @@ static inline void shade_lanes(const struct gz_illustrate_cast *cast,
 		out_tone[i] = weights->flat;
 }
 
+/* Whether any ray has met something. */
 static inline bool any_is_met(const struct RTCRayHit16 *hit)
 {
 	bool any = false;
@@ -385,6 +388,7 @@ static inline bool any_is_met(const struct RTCRayHit16 *hit)
 	return any;
 }
 
+/* What rays find that meet nothing. */
 static inline void fill_empty_hits(struct gz_illustrate_hits *hits)
 {
 	for (int i = 0; i < RAYS; i++) {

@@ -14,12 +14,14 @@
 /* Points of a row that are doubled at once. Chosen: they stay in the first-level cache. */
 enum { CUBIC_BLOCK = 64 };
 
+/* Between two points. */
 static float value_mean_of_2(float a, float b)
 {
 	const float mean = 0.5F * (a + b);
 	return isfinite(mean) ? mean : a;
 }
 
+/* Between four points. */
 static float value_mean_of_4(float a, float b, float c, float d)
 {
 	const float mean = 0.25F * (a + b + c + d);
@@ -43,6 +45,7 @@ static float value_cubic(float a, float b, float c, float d)
 	return value_is_finite(value) ? within : nearer;
 }
 
+/* b with a share, and a. */
 static float value_mix(float a, float b, float share)
 {
 	const float mixed = a + (b - a) * share;
@@ -55,24 +58,28 @@ static float value_mix(float a, float b, float share)
 #define PLANE(name) value_##name
 #include "render/reconstruct/cpu/plane_rows.h"
 
+/* Of two objects the nearer. */
 static uint32_t id_mean_of_2(uint32_t a, uint32_t b)
 {
 	(void)b;
 	return a;
 }
 
+/* Of four objects the first. */
 static uint32_t id_mean_of_4(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
 	(void)b, (void)c, (void)d;
 	return a;
 }
 
+/* Of four objects the one before the point. */
 static uint32_t id_cubic(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
 	(void)a, (void)c, (void)d;
 	return b;
 }
 
+/* The object of the greater share. */
 static uint32_t id_mix(uint32_t a, uint32_t b, float share)
 {
 	return share < 0.5F ? a : b;
