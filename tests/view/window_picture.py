@@ -277,6 +277,24 @@ class PictureWindow(WindowCase):
         self.tool("key", "b")
         self.until(lambda p: p.part(*panel) == before.part(*panel), "none")
 
+    def test_dragged_panel_leaves_the_whole_picture_behind(self):
+        self.start(*STILL, "--method", "acuity")
+        self.tool("windowsize", self.window, 800, 650)
+        self.until(lambda p: p.at(795, 645) == p.at(795, 45), "larger")
+        self.move(790, 640)
+        before = self.rest()
+        self.tool("key", "b")
+        old, new = (10, 60, 360, 200), (400, 110, 700, 240)
+        self.until(lambda p: p.part(*old) != before.part(*old), "frame times")
+        self.until_idle()
+        self.drag((150, 50), (550, 100))
+        self.move(790, 640)
+        moved = self.rest()
+        self.assertEqual(moved.part(10, 110, 360, 600), before.part(10, 110, 360, 600))
+        self.assertNotEqual(moved.part(*new), before.part(*new))
+        self.tool("key", "b")
+        self.until(lambda p: p.part(10, 60, 790, 560) == before.part(10, 60, 790, 560), "the picture")
+
     def extent(self, picture, width, height):
         """Width and height of the object in the middle, px."""
         ground = picture.at(width - 3, height // 2)

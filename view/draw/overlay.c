@@ -136,8 +136,8 @@ enum gz_result gz_overlay_init(struct gz_overlay *overlay, const struct gz_log *
 	return GZ_OK;
 }
 
-static enum gz_result follow_plan(struct gz_overlay *overlay, const struct gz_plan *plan,
-				  enum gz_view_overlay kind)
+enum gz_result gz_overlay_follow(struct gz_overlay *overlay, const struct gz_plan *plan,
+				 enum gz_view_overlay kind)
 {
 	if (overlay->serial == plan->serial && overlay->shown == (int)kind)
 		return GZ_OK;
@@ -154,7 +154,7 @@ static enum gz_result follow_plan(struct gz_overlay *overlay, const struct gz_pl
 enum gz_result gz_overlay_draw(struct gz_overlay *overlay, const struct gz_plan *plan,
 			       enum gz_view_overlay kind, double share, int width, int height)
 {
-	const enum gz_result r = follow_plan(overlay, plan, kind);
+	const enum gz_result r = gz_overlay_follow(overlay, plan, kind);
 	if (r != GZ_OK)
 		return r;
 	const float cell = GZ_TILE_EDGE;

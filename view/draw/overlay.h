@@ -81,6 +81,16 @@ struct gz_overlay {
 enum gz_result gz_overlay_init(struct gz_overlay *overlay, const struct gz_log *log);
 
 /**
+ * Take over a plan if it is another one than before, or another kind: overlay->cells are of it
+ * then. Needs the context current.
+ *
+ * @param kind  not GZ_OVERLAY_NONE
+ * @retval GZ_ERR_NO_MEM  no memory for the cells, which stay as they are
+ */
+enum gz_result gz_overlay_follow(struct gz_overlay *overlay, const struct gz_plan *plan,
+				 enum gz_view_overlay kind);
+
+/**
  * Draw the tint over the left @p share of a viewport of @p width times @p height px, which shows
  * the plan's picture. Needs the context current.
  *

@@ -96,6 +96,15 @@ void gz_quad_draw(const struct gz_quad *quad, int width, int height)
 	gz_fill_draw(&quad->fill, quad->shown);
 }
 
+void gz_quad_draw_part(const struct gz_quad *quad, int width, int height, const int corner[2],
+		       const int size[2])
+{
+	glEnable(GL_SCISSOR_TEST);
+	glScissor(corner[0], corner[1], size[0], size[1]);
+	gz_quad_draw(quad, width, height);
+	glDisable(GL_SCISSOR_TEST);
+}
+
 void gz_quad_clear(int width, int height)
 {
 	glViewport(0, 0, width, height);

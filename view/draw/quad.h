@@ -58,6 +58,11 @@ void gz_quad_show(struct gz_quad *quad, unsigned texture);
 /** Draw the picture over a viewport of @p width times @p height px. */
 void gz_quad_draw(const struct gz_quad *quad, int width, int height);
 
+/** Draw the picture as gz_quad_draw() does, but only within a rectangle of the viewport, in pixels
+ *  from its lower left corner. */
+void gz_quad_draw_part(const struct gz_quad *quad, int width, int height, const int corner[2],
+		       const int size[2]);
+
 /** Fill a viewport of @p width times @p height px with the dark ground of an empty window. */
 void gz_quad_clear(int width, int height);
 

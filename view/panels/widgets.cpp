@@ -15,13 +15,15 @@
 
 #include <unistd.h>
 
+#include "view/panels/panel_sheets.hpp"
+
 namespace
 {
 
 /* Screen coordinates of the unscaled interface (chosen: as Dear ImGui's own style). */
 constexpr float MARGIN = 8;
 constexpr float PADDING = 5;
-constexpr float PANEL_ALPHA = 0.85F;
+constexpr float PANEL_ALPHA = 0.85F;    /* of what lies on the picture without a title */
 constexpr float PANEL_SHARE_MAX = 0.9F; /* of the window's width */
 
 /* Frames after which Dear ImGui has answered a key. */
@@ -80,6 +82,7 @@ struct Memory {
 	bool canvas_by_click; /* a click gave the canvas its keyboard */
 	float scale;          /* of the fonts and the style there are */
 	float asked_scale;    /* 0: what the display says */
+	gz_panels::Sheets sheets;
 };
 
 Memory &memory()
@@ -476,6 +479,7 @@ void gz_widgets_follow_scale(GLFWwindow *window)
 	if (!ImGui::GetCurrentContext() || scale == memory().scale)
 		return;
 	make_interface(scale);
+	memory().sheets.free();
 	ImGui_ImplOpenGL3_DestroyFontsTexture();
 	ImGui_ImplOpenGL3_CreateFontsTexture();
 }
@@ -484,6 +488,7 @@ void gz_widgets_free(void)
 {
 	if (!ImGui::GetCurrentContext())
 		return;
+	memory().sheets.free();
 	ImGui_ImplOpenGL3_Shutdown();
 	ImGui_ImplGlfw_Shutdown();
 	destroy_context();
@@ -496,6 +501,7 @@ void gz_widgets_begin(void)
 	let_keys_lead();
 	hold_brief_keys();
 	ImGui::NewFrame();
+	memory().sheets.begin();
 	memory().dialog_was_open = memory().dialog_drawn;
 	memory().dialog_drawn = false;
 }
@@ -503,10 +509,19 @@ void gz_widgets_begin(void)
 void gz_widgets_end(void)
 {
 	ImGui::Render();
-	ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 	let_go_of_brief_keys();
 	memset(memory().presses, 0, sizeof memory().presses);
 	memory().enter_pressed = memory().escape_pressed = false;
+}
+
+int gz_widgets_covered(gz_pixel_rectangle out_covered[GZ_WIDGETS_COVERED_MAX])
+{
+	return memory().sheets.covered(ImGui::GetDrawData(), out_covered);
+}
+
+void gz_widgets_draw(void)
+{
+	memory().sheets.draw(ImGui::GetDrawData());
 }
 
 float gz_widgets_scale(void)
@@ -660,6 +675,17 @@ gz_place gz_draw_caption(gz_layer layer, gz_place at, gz_paint paint, const char
 	return opposite;
 }
 
+/* Begin a panel on an opaque ground if it has a title and is not folded. */
+static bool begin_on_ground(const char *title, bool *open, int flags)
+{
+	const bool opaque = !(flags & ImGuiWindowFlags_NoTitleBar) && memory().sheets.has_room();
+	ImGui::SetNextWindowBgAlpha(opaque ? 0 : PANEL_ALPHA);
+	const bool shown = ImGui::Begin(title, open, flags);
+	if (opaque && shown)
+		memory().sheets.add(ImGui::GetCurrentWindow());
+	return shown;
+}
+
 bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 {
 	int flags = ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
@@ -672,13 +698,12 @@ bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 	set_panel_place(*place, movable);
 	if (movable)
 		avoid_other_panels(title, *place);
-	ImGui::SetNextWindowBgAlpha(PANEL_ALPHA);
 	if (!place->takes_keyboard)
-		return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoFocusOnAppearing);
+		return begin_on_ground(title, open, flags | ImGuiWindowFlags_NoFocusOnAppearing);
 	memory().dialog_drawn = true;
 	const ImVec2 room = ImGui::GetIO().DisplaySize;
 	list_of(GZ_LAYER_PICTURE)->AddRectFilled(ImVec2(0, 0), room, IM_COL32(0, 0, 0, 110));
-	return ImGui::Begin(title, open, flags | ImGuiWindowFlags_NoCollapse);
+	return begin_on_ground(title, open, flags | ImGuiWindowFlags_NoCollapse);
 }
 
 void gz_panel_end(void)

@@ -5,9 +5,9 @@
  *
  * Places and lengths are in the window's screen coordinates, like GLFW's cursor, from the top left
  * corner. Lengths marked "unscaled" are multiplied by gz_widgets_scale(). Texts are UTF-8 and
- * borrowed until the call returns. Call everything but gz_widgets_init(), gz_widgets_free() and the
- * questions about mouse and keyboard between gz_widgets_begin() and gz_widgets_end(), on the thread
- * with the window's OpenGL context.
+ * borrowed until the call returns. Call everything but gz_widgets_init(), gz_widgets_free(),
+ * gz_widgets_covered(), gz_widgets_draw() and the questions about mouse and keyboard between
+ * gz_widgets_begin() and gz_widgets_end(), on the thread with the window's OpenGL context.
  *
  * An id identifies a widget within its panel; it is also its text, unless it begins with "##".
  * gz_widgets_push_id() tells rows of a list apart.
@@ -100,11 +100,26 @@ void gz_widgets_follow_scale(struct GLFWwindow *window);
 /** Undo gz_widgets_init(); nothing if it was not called or failed. */
 void gz_widgets_free(void);
 
-/** Begin a frame. It is drawn over the content of the current framebuffer. */
+/** Begin a frame. */
 void gz_widgets_begin(void);
 
-/** Draw the frame. */
+/** End the frame, which is laid out now, but not drawn. */
 void gz_widgets_end(void);
+
+/** A rectangle of the framebuffer, pixels from its lower left corner. It may reach beyond it. */
+struct gz_pixel_rectangle {
+	int left, bottom, width, height;
+};
+
+/** Most panels that cover what is beneath (chosen: more than there are). */
+#define GZ_WIDGETS_COVERED_MAX 16
+
+/** Where the frame that has ended hides all that is beneath: it need not be drawn there. May be
+ *  asked between gz_widgets_end() and gz_widgets_draw(). @return the number of rectangles */
+int gz_widgets_covered(struct gz_pixel_rectangle out_covered[GZ_WIDGETS_COVERED_MAX]);
+
+/** Draw the frame that has ended over the content of the current framebuffer. */
+void gz_widgets_draw(void);
 
 /** Screen coordinates per unscaled one: 1, more on a display with small pixels. */
 float gz_widgets_scale(void);

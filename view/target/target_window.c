@@ -261,6 +261,7 @@ static void draw_target_frame(const struct target_window *window, const struct t
 	gz_widgets_begin();
 	gz_marks_draw_message(instructions_of(&window->options->target));
 	gz_widgets_end();
+	gz_widgets_draw();
 }
 
 static void tell_shown(const struct target_window *window)

@@ -266,6 +266,12 @@ static void paint_picture(struct gz_window *window, int width, int height)
 		take_picture(window, width, height);
 }
 
+bool gz_window_reads_picture(const struct gz_window *window)
+{
+	const struct gz_window_capture *self = window->capture;
+	return self->video.video || self->video.wanted || self->picture_wanted == PICTURE;
+}
+
 static void take_screen(struct gz_window *window, int width, int height)
 {
 	if (window->capture->picture_wanted == WITH_PANELS)

@@ -6,6 +6,8 @@
 #ifndef GZ_VIEW_WINDOW_CAPTURE_H
 #define GZ_VIEW_WINDOW_CAPTURE_H
 
+#include <stdbool.h>
+
 #include "render/picture/image.h"
 #include "render/scene/scene.h"
 
@@ -19,5 +21,9 @@ void gz_window_write_picture(struct gz_window *window, struct gz_image *image,
 
 /** Write what the window shows without panels, with the next frame drawn. */
 void gz_window_write_shown(struct gz_window *window);
+
+/** Whether what is painted next is read from the framebuffer before panels are drawn: nothing of it
+ *  may be left out. */
+bool gz_window_reads_picture(const struct gz_window *window);
 
 #endif

@@ -18,9 +18,15 @@
 /* Greatest budget of the slider (chosen: ten frames a second). */
 #define BUDGET_SLIDER_MS 100.0
 
+/* Time for which the panel stays as it is (chosen: numbers can be read; drawing it for every frame
+ * would be a part of what it shows). */
+#define REST_NS 200000000
+
 struct gz_window_frame_times {
-	struct gz_frame_history history;
+	struct gz_frame_history history, shown;
+	int64_t shown_ns; /* since when it is shown */
 	int64_t begun_ns; /* this turn's frame */
+	bool newer;       /* the panel is open, and there are frames that it does not show */
 };
 
 /* ---- the plot ---- */
@@ -180,6 +186,7 @@ static const struct gz_window_action frame_times_actions[] = {
 static void forget_frame_times(struct gz_window *window)
 {
 	window->frame_times->history = (struct gz_frame_history) { 0 };
+	window->frame_times->shown = (struct gz_frame_history) { 0 };
 }
 
 /* Before a frame is cast. */
@@ -205,6 +212,35 @@ static void keep_frame_cost(struct gz_window *window)
 					  record->cast_ms - record->reconstruct_ms },
 	};
 	gz_frame_history_add(&self->history, &cost);
+	self->newer = window->settings.view.frame_times;
+}
+
+static int64_t frame_times_rest_ns(const struct gz_window_frame_times *self)
+{
+	return self->shown.count > 0 ? self->shown_ns + REST_NS - gz_clock_now_ns() : 0;
+}
+
+static void follow_frames(struct gz_window_frame_times *self)
+{
+	if (!self->newer || frame_times_rest_ns(self) > 0)
+		return;
+	self->shown = self->history;
+	self->shown_ns = gz_clock_now_ns();
+	self->newer = false;
+}
+
+/* The last frames before a rest are shown, too. */
+static void turn_frame_times(struct gz_window *window)
+{
+	const struct gz_window_frame_times *self = window->frame_times;
+	if (self->newer && frame_times_rest_ns(self) <= 0)
+		window->present_needed = true;
+}
+
+static double frame_times_patience_s(const struct gz_window *window)
+{
+	const struct gz_window_frame_times *self = window->frame_times;
+	return self->newer ? fmax(0, gz_ns_to_s(frame_times_rest_ns(self))) : INFINITY;
 }
 
 /* The range of the option is too wide for a slider. */
@@ -243,10 +279,16 @@ static void draw_frame_times(struct gz_window *window, const struct gz_window_ga
 		.margin_top = window->panels_top,
 	};
 	bool *shown = &window->settings.view.frame_times;
-	if (!*shown || !window->maker)
+	if (!*shown || !window->maker) {
+		window->frame_times->shown.count = 0;
+		window->frame_times->newer = false;
 		return;
+	}
+	if (window->frame_times->shown.count == 0)
+		window->frame_times->newer = true;
+	follow_frames(window->frame_times);
 	if (gz_panel_begin("Frame times", &place, shown)) {
-		draw_costs(&window->frame_times->history, window->settings.attention.budget_ms);
+		draw_costs(&window->frame_times->shown, window->settings.attention.budget_ms);
 		gz_widget_separator();
 		draw_settings(window);
 	}
@@ -259,7 +301,9 @@ const struct gz_window_part gz_window_frame_times_part = {
 	GZ_PART_ACTIONS(frame_times_actions),
 	GZ_PART_STATE(frame_times),
 	.scene_shown = forget_frame_times,
+	.turn = turn_frame_times,
 	.gaze = note_frame_start,
 	.presented = keep_frame_cost,
 	.panels = draw_frame_times,
+	.patience_s = frame_times_patience_s,
 };

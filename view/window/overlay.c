@@ -92,7 +92,10 @@ static void draw_tint_legend(struct gz_window *window, const struct gz_window_ga
 {
 	(void)gaze;
 	const struct gz_plan_cells *cells = &window->overlay->cells;
-	if (is_tint_shown(window))
+	const enum gz_view_overlay kind = (enum gz_view_overlay)window->settings.view.overlay;
+	/* Without memory it is switched off when it is painted. */
+	if (is_tint_shown(window) &&
+	    gz_overlay_follow(window->overlay, gz_frame_plan(window->maker), kind) == GZ_OK)
 		window->panels_top = gz_marks_draw_legend(
 			window->panels_top, (enum gz_view_overlay)window->overlay->shown, cells,
 			window->shown.image_sampling_rate);

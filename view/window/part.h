@@ -105,9 +105,11 @@ struct gz_window_part {
 	bool (*follows)(struct gz_window *window, const struct gz_window_gaze *gaze);
 	/** A picture has been cast; window->record describes it. */
 	void (*frame_made)(struct gz_window *window);
-	/** Draw by OpenGL over the picture, in a framebuffer of width times height px. */
+	/** Draw by OpenGL over the picture, in a framebuffer of width times height px. Panels have
+	 *  been laid out and are drawn afterwards; where they hide the picture it may be missing,
+	 *  unless gz_window_reads_picture() says that it is read. */
 	void (*paint)(struct gz_window *window, int width, int height);
-	/** Draw panels and marks by panels/widgets.h. Changes of window->settings are checked
+	/** Lay out panels and marks by panels/widgets.h. Changes of window->settings are checked
 	 *  afterwards. */
 	void (*panels)(struct gz_window *window, const struct gz_window_gaze *gaze);
 	/** Panels have been drawn, and the framebuffer of width times height px is about to be

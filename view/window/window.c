@@ -10,12 +10,14 @@
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
 #include "view/panels/widgets.h"
+#include "view/window/capture.h"
 #include "view/window/displays.h"
 #include "view/window/experiment.h"
 #include "view/window/gaze.h"
 #include "view/window/glfw.h"
 #include "view/window/loading.h"
 #include "view/window/sections.h"
+#include "view/window/uncovered.h"
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
@@ -172,7 +174,8 @@ bool gz_window_let_data_go(struct gz_window *window)
 	return all;
 }
 
-static void draw_all_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
+/* They are laid out first, as the picture need not be drawn beneath them. */
+static void lay_out_panels(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
 	gz_widgets_begin();
 	window->panels_top = 0;
@@ -193,8 +196,10 @@ static void paint_picture(struct gz_window *window, int width, int height)
 		gz_quad_clear(width, height);
 	width = smaller ? size_px[0] : width;
 	height = smaller ? size_px[1] : height;
-	if (window->any_shown)
+	if (window->any_shown && (smaller || gz_window_reads_picture(window)))
 		gz_quad_draw(&window->quad, width, height);
+	else if (window->any_shown)
+		gz_window_draw_uncovered(window, width, height);
 	GZ_FOR_EACH_PART (part)
 		if ((*part)->paint && (!window->alone || *part == window->alone))
 			(*part)->paint(window, width, height);
@@ -205,8 +210,9 @@ void gz_window_present(struct gz_window *window, const struct gz_window_gaze *ga
 {
 	const struct gz_scene_settings before = window->settings;
 	window->present_needed = false;
+	lay_out_panels(window, gaze);
 	paint_picture(window, width, height);
-	draw_all_panels(window, gaze);
+	gz_widgets_draw();
 	GZ_FOR_EACH_PART (part)
 		if ((*part)->drawn)
 			(*part)->drawn(window, width, height);
