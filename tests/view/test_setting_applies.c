@@ -6,6 +6,7 @@
 #include "render/plan/method.h"
 #include "render/scene/techniques.h"
 #include "view/settings/scene_keys.h"
+#include "view/settings/setting_label.h"
 
 static struct gz_scene_settings settings_of(int method)
 {
@@ -154,12 +155,27 @@ static void keys_of_a_technique_apply_where_it_draws(void **state)
 	assert_false(gz_setting_applies(&settings, "isosurface.isovalue"));
 }
 
+static void sections_are_named_in_words(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *key, *section;
+	} rows[] = { { "shading_map.haze", "Shading map" }, { "camera.eye", "Camera" } };
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		const struct gz_option option = { .key = rows[i].key };
+		char section[GZ_SETTING_LABEL_SIZE];
+		gz_setting_section(&option, section);
+		assert_string_equal(section, rows[i].section);
+	}
+}
+
 TEST_SUITE(setting_applies)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(foveation_keys_apply_to_the_methods_that_use_them),
 		cmocka_unit_test(keys_behind_a_switch_apply_once_it_is_on),
 		cmocka_unit_test(keys_of_a_technique_apply_where_it_draws),
+		cmocka_unit_test(sections_are_named_in_words),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -81,6 +81,17 @@ class Menus(WindowCase):
         self.find("exit")
         self.press_last("Return")
 
+    def test_everyday_words_find_something(self):
+        self.start()
+        for word in ("screenshot", "undo", "light", "colour", "shading", "clip", "background", "reset",
+                     "help", "exit", "fullscreen", "movie", "slice"):
+            with self.subTest(word=word):
+                self.find(word)
+                self.assertLess(self.amber_letters(self.rest()), 60, "nothing found")
+                self.press("Escape")
+        self.find("qqqq")
+        self.assertGreater(self.amber_letters(self.rest()), 60)
+
     def choose_technique(self, row):
         """Choose from the list of render.technique: 3 is slices, 1 raycast. The panel closes."""
         self.find("technique")

@@ -121,6 +121,19 @@ class TransferWindow(WindowCase):
         self.press("Delete")
         self.until_same(first, "removed")
 
+    def test_arrows_turn_the_camera_while_the_mouse_is_over_the_picture(self):
+        first = self.open_editor()
+        self.click(*self.point_at(0.28, 0))
+        self.move(SCREEN[0] // 2, 60)
+        self.press("Right")
+        turned = self.until_other(first, "turned")
+        self.press("Left")
+        back = self.until_other(turned, "turned back")
+        # Over the editor they move the point that was clicked.
+        self.move(*self.point_at(0.5, 0.5))
+        self.press("Up", 12)
+        self.until_other(back, "another function")
+
     def test_drag_with_shift_keeps_the_value(self):
         first = self.open_editor()
         start = self.point_at(0.65, 0.2)

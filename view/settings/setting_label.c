@@ -152,6 +152,8 @@ void gz_setting_section(const struct gz_option *option, char out_text[GZ_SETTING
 {
 	snprintf(out_text, GZ_SETTING_LABEL_SIZE, "%.*s", (int)strcspn(option->key, "."),
 		 option->key);
+	for (char *at = out_text; *at; at++)
+		*at = *at == '_' ? ' ' : *at;
 	out_text[0] = (char)toupper((unsigned char)out_text[0]);
 }
 

@@ -243,10 +243,10 @@ static void print_latency_lines(const struct gz_window *window, char *text, size
 		snprintf(scanout, sizeof scanout, "\n%6.1f  scan-out, estimated as half a refresh",
 			 latency.scanout_ms);
 	snprintf(text, size,
-		 "Latency, ms, medians of %d frames:%s\n%6.1f  frame, until the swap\n%6.1f  swap "
+		 "Latency, ms, medians of %d frame%s:%s\n%6.1f  frame, until the swap\n%6.1f  swap "
 		 "until finished%s\n%6.1f  total, without the display's own",
-		 latency.frames, age, latency.frame_ms, latency.present_ms, scanout,
-		 latency.total_ms);
+		 latency.frames, latency.frames == 1 ? "" : "s", age, latency.frame_ms,
+		 latency.present_ms, scanout, latency.total_ms);
 }
 
 /* Typed texts stay in their fields. */
