@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from ctypes import byref, c_char_p, c_int64, c_void_p
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Union
+from typing import Any, Union
 
 from . import _libraries as lib
 
@@ -135,9 +135,13 @@ def _point(point: lib.CPoint) -> Point:
     return (point.x, point.y)
 
 
+def _direction(numbers: Any) -> tuple[float, float, float]:
+    return (numbers[0], numbers[1], numbers[2])
+
+
 def _eye(eye: lib.CGazeEye) -> Eye:
     return Eye(
-        _point(eye.point), eye.pupil_mm, eye.valid, eye.confidence, tuple(eye.origin_mm), tuple(eye.direction)
+        _point(eye.point), eye.pupil_mm, eye.valid, eye.confidence, _direction(eye.origin_mm), _direction(eye.direction)
     )
 
 

@@ -48,7 +48,7 @@ def _find_gazectl() -> str:
 
 
 def _run(*arguments: Path) -> str:
-    done = subprocess.run([_find_gazectl(), *map(os.fspath, arguments)], capture_output=True, text=True, check=False)
+    done = subprocess.run([_find_gazectl(), *(os.fspath(each) for each in arguments)], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise GazecastError(done.stderr.strip() or f"gazectl ends with status {done.returncode}", done.returncode)
     return done.stdout
