@@ -17,7 +17,7 @@ if command -v appstreamcli >/dev/null; then
 	# With a page, and without one.
 	sed 's,@GAZECAST_HOMEPAGE@,https://example.org,' "$etc"/desktop/*.pages.xml.in >"$folder/pages"
 	for pages in "$folder/pages" /dev/null; do
-		sed -e "/@pages@/{r $pages" -e 's/@pages@//;}' -e 's/@PROJECT_VERSION@/0.1.0/;s/@[A-Za-z_]*@/2024-01-01/' \
+		sed -e "/@pages@/r $pages" -e '/@pages@/d' -e 's/@PROJECT_VERSION@/0.1.0/;s/@[A-Za-z_]*@/2024-01-01/' \
 			"$etc"/desktop/*.metainfo.xml.in >"$folder/org.gazecast.gazeview.metainfo.xml"
 		appstreamcli validate --no-net "$folder/org.gazecast.gazeview.metainfo.xml" || exit 1
 	done
