@@ -34,12 +34,20 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.acuity_foveal_deg", GZ_OPTION_DOUBLE, AT(acuity_foveal_deg), 0.001, 1,
 	  .preset = "0.020833333333333332",
 	  .help = "smallest cycle that the eye resolves at the gaze, degrees" },
+	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
+	  .preset = "0.5",
+	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "
+		  "eightfold" },
 	/* The preset is Geisler and Perry's 1/64. */
 	{ "foveation.contrast_threshold", GZ_OPTION_DOUBLE, AT(contrast_threshold), 0.0001, 1,
 	  .preset = "0.015625", .help = "contrast: least contrast that is seen at the gaze" },
-	{ "foveation.contrast_first", GZ_OPTION_DOUBLE, AT(contrast_first), 2, 8, .preset = "2",
+	{ "foveation.contrast_first", GZ_OPTION_DOUBLE, AT(contrast_first), 1, 8, .preset = "2",
 	  .help = "contrast: how far apart the first rays are, as a multiple of what the eye "
 		  "resolves" },
+	{ "foveation.contrast_finest", GZ_OPTION_DOUBLE, AT(contrast_finest), 0.25, 1,
+	  .preset = "1",
+	  .help = "contrast: how near to each other rays may come at edges, as a multiple of what "
+		  "the eye resolves" },
 	{ "foveation.contrast_rounds", GZ_OPTION_INT, AT(contrast_rounds), 1, 4, .preset = "2",
 	  .help = "contrast: most rounds of rays for a picture" },
 	{ "foveation.mdc_square_px", GZ_OPTION_DOUBLE, AT(mdc_square_px), 1, GZ_IMAGE_SIDE_MAX,

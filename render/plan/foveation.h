@@ -75,8 +75,10 @@ struct gz_foveation {
 	int filter;                /**< enum gz_filter; pyramids only, regions are bilinear */
 	double acuity_slope;       /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg;  /**< omega0: degrees per cycle at the gaze */
+	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
 	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */
 	double contrast_first;     /**< spacing of the first rays, times what the eye resolves */
+	double contrast_finest;    /**< finest spacing, times what the eye resolves, (0, 1] */
 	int contrast_rounds;       /**< most rounds of rays */
 	double mdc_square_px;      /**< edge of the fine square, px of the picture */
 	int mdc_spacing;           /**< outside the square */

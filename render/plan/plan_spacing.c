@@ -181,7 +181,8 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
 	double spacing = curve_at(&context->spacing, eccentricity);
 	if (context->round == GZ_ROUND_FURTHER)
-		spacing = fmax(spacing, contrast_spacing(context, eccentricity));
+		spacing = fmax(spacing * context->foveation->contrast_finest,
+			       contrast_spacing(context, eccentricity));
 	if (!context->spacing_in_px)
 		spacing *= length_mm * context->rays_per_mm;
 	if (context->round == GZ_ROUND_FIRST)
@@ -252,28 +253,22 @@ static void make_even_ladder(double top, struct gz_plan *plan)
 		plan->steps[i] = (float)pow(top, (double)i / (GZ_PLAN_STEPS_MAX - 1));
 }
 
-/* Steps by rung (docs/foveation.md). Chosen: they grow more slowly than the spacing, since errors
- * along a ray change shapes instead of only blurring them. */
-static const float acuity_steps[GZ_LADDER_RUNGS] = {
-	1, 2, 2.5F, 3, 3.5F, 4, 5, 6, 7, 8,
-};
-
-/* By the rung that the eye resolves at a place, whatever a tile's own is. Chosen: square roots of
- * acuity's. Rays are cast where there is contrast, and there a missed surface shows most. */
-static const float place_steps[GZ_LADDER_RUNGS] = {
-	1, 1.4F, 1.6F, 1.7F, 1.9F, 2, 2.2F, 2.4F, 2.6F, 2.8F,
+/* Longest steps by rung. Chosen: they grow more slowly than the spacing, since errors along a ray
+ * change shapes instead of only blurring them. */
+static const double longest_steps[GZ_LADDER_RUNGS] = {
+	1, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8,
 };
 
 /* With longer steps a ray misses most of a volume. */
 static const double step_max = 16;
 
-static void make_acuity_ladder(const struct gz_plan_context *context, const float *steps,
-			       struct gz_plan *plan)
+static void make_acuity_ladder(const struct gz_plan_context *context, struct gz_plan *plan)
 {
 	plan->step_count = GZ_LADDER_RUNGS;
 	for (int i = 0; i < GZ_LADDER_RUNGS; i++) {
 		const double most = fmax(1, context->steps_per_px * gz_ladder_px[i]);
-		plan->steps[i] = (float)fmin((double)steps[i], most);
+		const double step = pow(longest_steps[i], context->foveation->acuity_step_growth);
+		plan->steps[i] = (float)fmin(step, most);
 	}
 }
 
@@ -294,10 +289,8 @@ void gz_plan_make_steps(const struct gz_plan_context *context, struct gz_plan *p
 		make_even_ladder(1 / context->foveation->step_floor, plan);
 		return;
 	case GZ_STEPS_RUNG:
-		make_acuity_ladder(context, acuity_steps, plan);
-		return;
 	case GZ_STEPS_PLACE:
-		make_acuity_ladder(context, place_steps, plan);
+		make_acuity_ladder(context, plan);
 		return;
 	case GZ_STEPS_TABLE:
 		make_table_ladder(context, plan);

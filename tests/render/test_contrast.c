@@ -28,6 +28,17 @@ static struct gz_foveation contrast_foveation(void)
 	return foveation;
 }
 
+/* Acuity with the finest rays that contrast may cast: a power of two of acuity's, so that this
+ * rounds as the method does. */
+static struct gz_foveation finest_foveation(const struct gz_foveation *contrast)
+{
+	struct gz_foveation foveation = *contrast;
+	foveation.method = GZ_METHOD_ACUITY;
+	foveation.acuity_slope *= contrast->contrast_finest;
+	foveation.acuity_foveal_deg *= contrast->contrast_finest;
+	return foveation;
+}
+
 /* Spacing that a tile's pattern has, px. */
 static double spacing_of(const struct gz_plan *plan, const struct gz_tile *tile)
 {
@@ -56,18 +67,19 @@ static double *shown_spacings(const struct gz_plan *plan)
 	return spacings;
 }
 
-/* Each pixel is shown by one tile, no coarser than before and no finer than acuity's, and the rays
- * are counted. */
-static void check_refined(const struct gz_plan *plan, const struct gz_plan *acuity, double *before)
+/* Each pixel is shown by one tile, no coarser than before and no finer than the finest plan, and
+ * the rays are counted. */
+static void check_refined(const struct gz_plan *plan, const struct gz_plan *finest_plan,
+			  double *before)
 {
-	double *spacings = shown_spacings(plan), *finest = shown_spacings(acuity);
+	double *spacings = shown_spacings(plan), *finest = shown_spacings(finest_plan);
 	uint64_t rays = 0;
 	for (size_t i = 0; i < plan->tile_count; i++)
 		rays += (uint64_t)__builtin_popcount(gz_plan_tile_active(plan, &plan->tiles[i]));
 	assert_int_equal(rays, plan->ray_count);
 	for (int i = 0; i < plan->width * plan->height; i++) {
 		if (spacings[i] == 0 || spacings[i] > before[i] || spacings[i] < finest[i])
-			fail_msg("pixel %d %d: spacing %g, before %g, acuity %g", i % plan->width,
+			fail_msg("pixel %d %d: spacing %g, before %g, finest %g", i % plan->width,
 				 i / plan->width, spacings[i], before[i], finest[i]);
 		before[i] = spacings[i];
 	}
@@ -84,7 +96,7 @@ static void fill_contrasts(float *contrasts, size_t count, unsigned *seed)
 	}
 }
 
-static void refined_plans_show_each_pixel_once_and_no_finer_than_acuity(void **state)
+static void refined_plans_show_each_pixel_once_and_no_finer_than_allowed(void **state)
 {
 	(void)state;
 	static const struct gz_point gazes[] = { { 0.5F, 0.5F },
@@ -95,18 +107,19 @@ static void refined_plans_show_each_pixel_once_and_no_finer_than_acuity(void **s
 	for (size_t s = 0; s < 4; s++)
 		for (size_t g = 0; g < 3; g++) {
 			struct gz_foveation foveation = contrast_foveation();
+			foveation.contrast_finest = g == 1 ? 0.5 : 1;
+			const struct gz_foveation fine = finest_foveation(&foveation);
 			const struct gz_display display =
 				gz_display_default(sizes[s][0], sizes[s][1]);
-			struct gz_plan plan = { 0 }, acuity = { 0 };
+			struct gz_plan plan = { 0 }, finest = { 0 };
 			const struct gz_plan_request request =
 				request_for(&foveation, &display, gazes[g]);
 			assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
-			foveation.method = GZ_METHOD_ACUITY;
-			assert_int_equal(gz_plan_make(&foveation, &display, gazes[g], sizes[s][0],
-						      sizes[s][1], &acuity),
+			assert_int_equal(gz_plan_make(&fine, &display, gazes[g], sizes[s][0],
+						      sizes[s][1], &finest),
 					 GZ_OK);
 			double *before = shown_spacings(&plan);
-			check_refined(&plan, &acuity, before);
+			check_refined(&plan, &finest, before);
 			for (int round = 0, first = 0; round < 3; round++) {
 				const size_t count = plan.tile_count - (size_t)first;
 				float *contrasts = malloc((count + 1) * sizeof *contrasts);
@@ -114,25 +127,27 @@ static void refined_plans_show_each_pixel_once_and_no_finer_than_acuity(void **s
 				assert_int_equal(gz_plan_refine(&plan, (size_t)first, contrasts),
 						 GZ_OK);
 				first += (int)count;
-				check_refined(&plan, &acuity, before);
+				check_refined(&plan, &finest, before);
 				free(contrasts);
 			}
 			free(before);
 			gz_plan_free(&plan);
-			gz_plan_free(&acuity);
+			gz_plan_free(&finest);
 		}
 }
 
-static void full_contrast_needs_the_tiles_of_acuity(void **state)
+/* Finer than those of acuity, whose samples miss the place of an edge. */
+static void full_contrast_takes_the_finest_tiles(void **state)
 {
 	(void)state;
 	struct gz_foveation foveation = contrast_foveation();
 	const struct gz_display display = gz_display_default(1280, 720);
 	const struct gz_point gaze = { 0.4F, 0.6F };
-	struct gz_plan plan = { 0 }, acuity = { 0 };
+	struct gz_plan plan = { 0 }, acuity = { 0 }, finest = { 0 };
 	const struct gz_plan_request request = request_for(&foveation, &display, gaze);
-	/* An eye that sees everything, so that acuity alone is the bound. */
+	/* An eye that sees everything, so that the finest spacing alone is the bound. */
 	foveation.contrast_threshold = 0.0001;
+	foveation.contrast_finest = 0.5;
 	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
 	const size_t first = plan.tile_count;
 	assert_true(plan.ray_count > 0);
@@ -140,15 +155,19 @@ static void full_contrast_needs_the_tiles_of_acuity(void **state)
 	for (size_t i = 0; i < first; i++)
 		contrasts[i] = 1;
 	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	const struct gz_foveation fine = finest_foveation(&foveation);
+	assert_int_equal(gz_plan_make(&fine, &display, gaze, 1280, 720, &finest), GZ_OK);
 	foveation.method = GZ_METHOD_ACUITY;
 	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 1280, 720, &acuity), GZ_OK);
-	double *made = shown_spacings(&plan), *wanted = shown_spacings(&acuity);
+	assert_true(finest.ray_count > acuity.ray_count);
+	double *made = shown_spacings(&plan), *wanted = shown_spacings(&finest);
 	assert_memory_equal(made, wanted, 1280 * 720 * sizeof *made);
 	free(made);
 	free(wanted);
 	free(contrasts);
 	gz_plan_free(&plan);
 	gz_plan_free(&acuity);
+	gz_plan_free(&finest);
 }
 
 static void a_plan_made_again_forgets_its_further_rounds(void **state)
@@ -438,8 +457,8 @@ static void rays_go_where_there_is_contrast(void **state)
 TEST_SUITE(contrast)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(refined_plans_show_each_pixel_once_and_no_finer_than_acuity),
-		cmocka_unit_test(full_contrast_needs_the_tiles_of_acuity),
+		cmocka_unit_test(refined_plans_show_each_pixel_once_and_no_finer_than_allowed),
+		cmocka_unit_test(full_contrast_takes_the_finest_tiles),
 		cmocka_unit_test(a_plan_made_again_forgets_its_further_rounds),
 		cmocka_unit_test(a_technique_that_does_not_refine_takes_the_tiles_of_acuity),
 		cmocka_unit_test(a_contrast_is_shown_as_finely_as_it_is_seen),
