@@ -170,6 +170,30 @@ static void full_contrast_takes_the_finest_tiles(void **state)
 	gz_plan_free(&finest);
 }
 
+/* Then the fovea is cast in the first round, and only edges outside it get more. */
+static void first_rays_may_be_those_of_acuity(void **state)
+{
+	(void)state;
+	struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(1280, 720);
+	const struct gz_point gaze = { 0.4F, 0.6F };
+	struct gz_plan plan = { 0 }, acuity = { 0 };
+	foveation.contrast_first = 1;
+	const struct gz_plan_request request = request_for(&foveation, &display, gaze);
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	assert_int_equal(gz_plan_rounds(&plan), 2);
+	foveation.method = GZ_METHOD_ACUITY;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, 1280, 720, &acuity), GZ_OK);
+	assert_int_equal(plan.tile_count, acuity.tile_count);
+	assert_int_equal(plan.ray_count, acuity.ray_count);
+	double *made = shown_spacings(&plan), *wanted = shown_spacings(&acuity);
+	assert_memory_equal(made, wanted, 1280 * 720 * sizeof *made);
+	free(made);
+	free(wanted);
+	gz_plan_free(&plan);
+	gz_plan_free(&acuity);
+}
+
 static void a_plan_made_again_forgets_its_further_rounds(void **state)
 {
 	(void)state;
@@ -459,6 +483,7 @@ TEST_SUITE(contrast)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(refined_plans_show_each_pixel_once_and_no_finer_than_allowed),
 		cmocka_unit_test(full_contrast_takes_the_finest_tiles),
+		cmocka_unit_test(first_rays_may_be_those_of_acuity),
 		cmocka_unit_test(a_plan_made_again_forgets_its_further_rounds),
 		cmocka_unit_test(a_technique_that_does_not_refine_takes_the_tiles_of_acuity),
 		cmocka_unit_test(a_contrast_is_shown_as_finely_as_it_is_seen),
