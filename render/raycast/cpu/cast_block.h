@@ -155,15 +155,21 @@ SIMD vf scattered_sample(const struct gz_cast *cast, enum gz_voxel_type type, co
 	return mix_pairs(pairs, share);
 }
 
+/* Places within a block: the voxel before each, and the share of the next. */
+SIMD void block_shares(const vf places[3], vf whole[3], vf share[3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		whole[axis] = vf_floor(places[axis]);
+		share[axis] = places[axis] - whole[axis];
+	}
+}
+
 /* The values at places within the block, in FETCH_UNITs. */
 SIMD vf block_sample(const struct block *block, enum gz_voxel_type type, int wide,
 		     const vf places[3])
 {
 	vf whole[3], share[3];
-	for (int axis = 0; axis < 3; axis++) {
-		whole[axis] = vf_floor(places[axis]);
-		share[axis] = places[axis] - whole[axis];
-	}
+	block_shares(places, whole, share);
 	if (type == GZ_VOXEL_F32)
 		return block_mix_floats(&block->voxels, whole, share);
 	vi pairs[4];

@@ -226,11 +226,18 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 	struct rays rays[TILE_PARTS];
 	struct view view[TILE_PARTS];
 	struct light light[TILE_PARTS];
-	const struct march march = { cast, reading, tile->step, rays, coloured };
+	struct near_voxels near;
+	struct unlit unlit[TILE_PARTS];
+	const struct march march = {
+		cast, reading, tile->step, rich, coloured, rays, &near, unlit
+	};
 	int hit = 0;
+	if (rich)
+		near_nothing(&near);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		set_up_rays(cast, tile, part * SIMD_LANES, &rays[part]);
 		light[part] = (struct light) { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
+		unlit[part].count = 0;
 		hit |= vm_any(rays[part].hit);
 		if (rich && cast->light.on && vm_any(rays[part].hit)) {
 			set_up_view(cast, tile->step, &rays[part], &view[part]);
@@ -243,6 +250,8 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 				  : cast_by_samples(&march, light);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		const int first = part * SIMD_LANES;
+		const struct march one = march_of_part(&march, part);
+		settle_unlit(&one, &light[part]);
 		if (__builtin_expect(tile->hit_depth != NULL, 0))
 			composite_hits(tile, first, &light[part]);
 		vi_store(out_pixels + first, to_pixel(cast, tile, first, &light[part]));

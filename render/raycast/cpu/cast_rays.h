@@ -36,23 +36,27 @@ struct reading {
 /* Registers that the rays of a tile take. */
 enum { TILE_PARTS = GZ_TILE_RAYS / SIMD_LANES };
 
+struct near_voxels;
+struct unlit;
+
 /* What every function along rays needs. All of them are inlined, so that the fields stay in
  * registers and the constants stay constants. Do not pass it to a function that is not inlined. */
 struct march {
 	const struct gz_cast *cast;
 	struct reading reading;
-	int step;                /* of the plan */
+	int step;     /* of the plan */
+	int rich;     /* there may be light or voxels with colours; a constant of each kernel, */
+	int coloured; /* as is that there are such voxels */
 	const struct rays *rays; /* of one register, or the first of several */
-	int coloured;            /* voxels have colours; a constant of each kernel, too */
+	/* with light: */
+	struct near_voxels *near; /* of the tile: cast_near.h */
+	struct unlit *unlit;      /* for each register: cast_shade.h */
 };
 
 /* The march of the rays of one register of several. */
-SIMD struct march march_of_part(const struct march *m, int part)
-{
-	struct march one = *m;
-	one.rays += part;
-	return one;
-}
+#define march_of_part(m, part)                                                          \
+	((struct march) { (m)->cast, (m)->reading, (m)->step, (m)->rich, (m)->coloured, \
+			  (m)->rays + (part), (m)->near, (m)->unlit + (part) })
 
 /* Steps from the origin to where the rays enter the whole box, and to where they enter and leave
  * the shown part of it. */

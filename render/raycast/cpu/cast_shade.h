@@ -10,6 +10,7 @@
 #include "render/data/voxel_colour.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
+#include "render/raycast/cpu/cast_near.h"
 #include "render/raycast/cpu/cast_rays.h"
 #include "render/raycast/cpu/simd_light.h"
 #include "render/raycast/cpu/simd_surroundings.h"
@@ -34,13 +35,24 @@ SIMD struct colour unpack_colour(vi packed)
 	};
 }
 
-SIMD void composite_colour(struct colour colour, vf opacity, vm visible, struct light *light)
+/* Take a share of the light that still comes through. */
+SIMD vf take_light(vf opacity, vm visible, struct light *light)
 {
 	const vf weight = light->through * vf_select(visible, opacity, vf_set(0));
+	light->through = light->through - weight;
+	return weight;
+}
+
+SIMD void add_colour_share(struct colour colour, vf weight, struct light *light)
+{
 	light->red = vf_fma(weight, colour.red, light->red);
 	light->green = vf_fma(weight, colour.green, light->green);
 	light->blue = vf_fma(weight, colour.blue, light->blue);
-	light->through = light->through - weight;
+}
+
+SIMD void composite_colour(struct colour colour, vf opacity, vm visible, struct light *light)
+{
+	add_colour_share(colour, take_light(opacity, visible, light), light);
 }
 
 /* Add what the rays of a register meet: it is opaque, so nothing comes through. */
@@ -192,10 +204,32 @@ SIMD void difference_voxels(const struct gz_cast *cast, enum gz_voxel_type type,
 			mix(mix(before[0], before[1], share[1]), lower, share[2]);
 }
 
-/* The gradient at places counted from the first datum. */
-SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int nearest,
-			const vf at[3], vm mask, vf gradient[3])
+#ifdef SIMD_BLOCKS
+SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
+			    const struct rays *rays, struct near_voxels *near, const vf at[3],
+			    vm mask, vf difference[3])
 {
+	if (type == GZ_VOXEL_F32)
+		difference_voxels(cast, type, at, mask, difference);
+	else if (near_differences(cast, type, rays, near, at, mask, difference) == 0)
+		difference_words(cast, type, at, mask, difference);
+}
+#else
+SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
+			    const struct rays *rays, struct near_voxels *near, const vf at[3],
+			    vm mask, vf difference[3])
+{
+	(void)rays, (void)near;
+	difference_voxels(cast, type, at, mask, difference);
+}
+#endif
+
+/* The gradient at places counted from the first datum, on the way that the rays go. */
+SIMD void find_gradient(const struct gz_cast *cast, struct reading reading, const struct rays *rays,
+			struct near_voxels *near, const vf at[3], vm mask, vf gradient[3])
+{
+	const enum gz_voxel_type type = reading.type;
+	const int nearest = reading.nearest;
 	vm outside = vm_but(mask, mask); /* closer than a voxel, and rounding, to the rim */
 	for (int axis = 0; axis < 3; axis++)
 		outside =
@@ -205,7 +239,7 @@ SIMD void find_gradient(const struct gz_cast *cast, enum gz_voxel_type type, int
 	const vm inside = vm_but(mask, outside);
 	const int by_voxels = !nearest && !cast->bricks.table && vm_any(inside);
 	if (by_voxels)
-		difference_voxels(cast, type, at, inside, gradient);
+		difference_inside(cast, type, rays, near, at, inside, gradient);
 	if (!by_voxels || vm_any(vm_and(mask, outside))) {
 		vf samples[3];
 		difference_samples(cast, type, nearest, at, mask, samples);
@@ -335,13 +369,11 @@ SIMD vf shade_channel(vf colour, float full, const struct lighting *lighting, in
 	return vf_fma(lighting->weight, lit - even, even);
 }
 
-/* Surfaces at places counted from the first datum, of which this share sees the light. */
-SIMD void light_surfaces(const struct gz_cast *cast, struct reading reading,
-			 const struct view *view, const vf at[3], vm mask, vf arriving,
-			 struct lighting *lighting)
+/* Surfaces at places counted from the first datum, of which this share sees the light. The gradient
+ * becomes a unit vector. */
+SIMD void light_surfaces(const struct gz_cast *cast, const struct view *view, const vf at[3],
+			 vm mask, vf gradient[3], vf arriving, struct lighting *lighting)
 {
-	vf gradient[3];
-	find_gradient(cast, reading.type, reading.nearest, at, mask, gradient);
 	const vf length2 = dot_lanes(gradient, gradient);
 	lighting->weight = length2 / (length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
 	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
@@ -366,34 +398,80 @@ SIMD void light_surfaces(const struct gz_cast *cast, struct reading reading,
 	}
 }
 
-/* Light a colour at k. Not inlined: only visible samples need it, which are few, and one function
- * for all voxel types is a twelfth of the code. */
-static __attribute__((noinline)) struct colour shade(const struct gz_cast *cast,
-						     struct reading reading,
-						     const struct rays *rays, vf k, vm mask,
-						     struct colour colour)
+/* Samples whose colours are still to be lit and added. Several are lit at once, because each takes
+ * a long row of steps that wait for each other, and so do not wait for those of the others. */
+enum { LIT_AT_ONCE = 4 };
+
+struct unlit_sample {
+	vf k;
+	vm mask;
+	struct colour colour;
+	vf weight; /* share of the light that it adds */
+};
+
+struct unlit {
+	int count;
+	struct unlit_sample samples[LIT_AT_ONCE];
+};
+
+/* The places of a sample, counted from the first datum. */
+SIMD void unlit_places(const struct rays *rays, const struct unlit_sample *sample, vf at[3])
 {
-	const struct view *view = rays->view;
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(sample->k, rays->delta[axis], rays->datum[axis]);
+}
+
+/* Light a sample of which the gradient is known. */
+SIMD struct colour shade(const struct gz_cast *cast, const struct rays *rays,
+			 const struct unlit_sample *sample, vf gradient[3])
+{
 	struct lighting lighting = { .even = vf_set(1),
 				     .shine = { vf_set(0), vf_set(0) },
 				     .mirrored = { { { vf_set(0), vf_set(0), vf_set(0) } },
 						   vf_set(0) },
 				     .weight = vf_set(0) };
+	const struct colour *colour = &sample->colour;
 	vf at[3], arriving = vf_set(1);
-	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, rays->delta[axis], rays->datum[axis]);
+	unlit_places(rays, sample, at);
 	if (cast->light.shadow.steps) {
 		const vf ambient = vf_set(cast->light.ambient);
-		arriving = find_arriving(cast, at, mask);
+		arriving = find_arriving(cast, at, sample->mask);
 		lighting.even = vf_fma(arriving, vf_set(1) - ambient, ambient);
 	}
 	if (cast->light.gradient)
-		light_surfaces(cast, reading, view, at, mask, arriving, &lighting);
+		light_surfaces(cast, rays->view, at, sample->mask, gradient, arriving, &lighting);
 	return (struct colour) {
-		shade_channel(colour.red, 2047, &lighting, 0),
-		shade_channel(colour.green, 2047, &lighting, 1),
-		shade_channel(colour.blue, 1023, &lighting, 2),
+		shade_channel(colour->red, 2047, &lighting, 0),
+		shade_channel(colour->green, 2047, &lighting, 1),
+		shade_channel(colour->blue, 1023, &lighting, 2),
 	};
+}
+
+/* Light and add all samples that are still to be. Not inlined: only visible samples need it, which
+ * are few, and one function for all voxel types is a twelfth of the code. */
+static __attribute__((noinline)) void light_samples(const struct gz_cast *cast,
+						    struct reading reading, const struct rays *rays,
+						    struct near_voxels *near, struct unlit *unlit,
+						    struct light *light)
+{
+	vf gradients[LIT_AT_ONCE][3];
+	for (int i = 0; cast->light.gradient && i < unlit->count; i++) {
+		vf at[3];
+		unlit_places(rays, &unlit->samples[i], at);
+		find_gradient(cast, reading, rays, near, at, unlit->samples[i].mask, gradients[i]);
+	}
+	for (int i = 0; i < unlit->count; i++) {
+		const struct unlit_sample *sample = &unlit->samples[i];
+		add_colour_share(shade(cast, rays, sample, gradients[i]), sample->weight, light);
+	}
+	unlit->count = 0;
+}
+
+/* Light and add what is still to be. */
+SIMD void settle_unlit(const struct march *m, struct light *light)
+{
+	if (m->rich && m->unlit->count > 0)
+		light_samples(m->cast, m->reading, m->rays, m->near, m->unlit, light);
 }
 
 /* Add a voxel's colour to sums of colours by weight, and of weights. */
@@ -448,20 +526,26 @@ static __attribute__((noinline)) struct colour own_colour(const struct gz_cast *
 	};
 }
 
-/* Add the colour of a sample at k of the lanes of mask, lit if the scene has light. Voxels' own
- * colours replace those of the transfer function. */
+/* Add the colour of a sample at k of the lanes of mask, now or, if the scene has light, when it is
+ * lit (settle_unlit). Voxels' own colours replace those of the transfer function. */
 SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm mask,
 		       struct light *light)
 {
 	struct colour colour = unpack_colour(packed);
-	if (m->rays->view || m->coloured) {
+	if (m->rich && (m->rays->view || m->coloured)) {
 		const vm visible = vm_and(mask, vf_less(vf_set(0), opacity));
 		if (!vm_any(visible))
 			return;
 		if (m->coloured)
 			colour = own_colour(m->cast, m->reading.nearest, m->rays, k, visible);
-		if (!m->coloured || m->rays->view)
-			colour = shade(m->cast, m->reading, m->rays, k, visible, colour);
+		if (m->rays->view) {
+			const vf weight = take_light(opacity, visible, light);
+			m->unlit->samples[m->unlit->count++] =
+				(struct unlit_sample) { k, visible, colour, weight };
+			if (m->unlit->count == LIT_AT_ONCE)
+				settle_unlit(m, light);
+			return;
+		}
 	}
 	composite_colour(colour, opacity, mask, light);
 }

@@ -238,6 +238,10 @@ SIMD int vf_store_packed(float *x, vf a, vm mask)
 		x[count++] = lane[__builtin_ctz(bits)];
 	return count;
 }
+SIMD vi vi_subtract(vi a, vi b)
+{
+	return _mm256_sub_epi32(a, b);
+}
 SIMD vi vi_xor(vi a, vi b)
 {
 	return _mm256_xor_si256(a, b);

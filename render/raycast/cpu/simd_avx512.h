@@ -231,6 +231,10 @@ SIMD int vf_store_packed(float *x, vf a, vm mask)
 	vf_store(x, _mm512_maskz_compress_ps(mask, a));
 	return __builtin_popcount(mask);
 }
+SIMD vi vi_subtract(vi a, vi b)
+{
+	return _mm512_sub_epi32(a, b);
+}
 SIMD vi vi_xor(vi a, vi b)
 {
 	return _mm512_xor_si512(a, b);
