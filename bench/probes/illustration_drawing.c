@@ -16,6 +16,7 @@
 #include "base/workers.h"
 #include "drawing_planes.h"
 #include "render/illustration/cached_points.h"
+#include "render/illustration/hatch_balance.h"
 #include "render/illustration/hatch_lines.h"
 #include "render/illustration/stipple_points.h"
 #include "render/illustration/stipple_svg.h"
@@ -93,6 +94,7 @@ struct drawing_state {
 	struct drawing_planes planes;
 	struct gz_stipple_discs discs;
 	struct gz_hatch_lines lines;
+	struct gz_hatch_balance balance;
 	struct gz_stipple_sheet sheet;
 	double world_per_mm;
 	struct gz_camera camera;
@@ -207,6 +209,19 @@ static void print_times(const char *what, double times_ms[RUNS])
 	printf("%s best_ms %.2f median_ms %.2f\n", what, times_ms[0], times_ms[RUNS / 2]);
 }
 
+/* Make the lines as dark as the map around each place. */
+static enum gz_result balance_lines(struct drawing_state *state, const struct gz_stipple_view *view)
+{
+	static const bool hatched[1] = { true };
+	const struct gz_hatch_target target = { .tone = view->tone,
+						.ids = view->ids,
+						.hatched = hatched,
+						.hatched_count = 1,
+						.size_px = view->size_px };
+	return gz_hatch_balance_lines(&state->balance, &target, state->lines.pieces,
+				      state->lines.count, state->workers);
+}
+
 static enum gz_result choose_once(struct drawing_state *state, const struct gz_stipple_view *view,
 				  bool hatch)
 {
@@ -219,7 +234,7 @@ static enum gz_result choose_once(struct drawing_state *state, const struct gz_s
 		result = gz_hatch_choose(&state->strokes[layer], view,
 					 layer == 0 ? GZ_HATCH_FIRST : GZ_HATCH_CROSS,
 					 state->workers, &state->lines);
-	return result;
+	return result == GZ_OK ? balance_lines(state, view) : result;
 }
 
 static enum gz_result choose_points(struct drawing_state *state,
@@ -422,6 +437,7 @@ int main(int argc, char **argv)
 	gz_hatch_strokes_free(&state.strokes[0]);
 	gz_hatch_strokes_free(&state.strokes[1]);
 	gz_hatch_lines_free(&state.lines);
+	gz_hatch_balance_free(&state.balance);
 	gz_workers_destroy(&state.workers);
 	drawing_planes_free(&state.planes);
 	gz_stipple_discs_free(&state.discs);

@@ -46,7 +46,7 @@ float gz_hatch_density(float ink)
 
 /* Lighter tones have thinner lines instead of fewer. Chosen by eye: a line by itself, far from
  * others, is no tone. */
-#define THINNER_BELOW 0.15F
+#define THINNER_BELOW 0.25F
 
 struct hatch_choice {
 	const struct gz_hatch_strokes *strokes;
