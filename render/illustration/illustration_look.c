@@ -144,6 +144,10 @@ void gz_illustration_look_resolve(const struct gz_illustration_look *look,
 		if (of_object)
 			gz_shading_template_apply(of_object, &combined);
 		gz_illustration_apply(&combined, out_settings);
+		if (look->template_name[0])
+			gz_shading_template_apply_single(&look->shading_template, out_settings);
+		if (of_object)
+			gz_shading_template_apply_single(of_object, out_settings);
 	}
 	if (look->show == GZ_SHOW_SHADING)
 		return;

@@ -4,6 +4,7 @@
 #include <stddef.h>
 
 #include "render/illustration/shading_parameters.h"
+#include "render/illustration/shading_template.h"
 
 #define AT(field) offsetof(struct gz_shading_settings, field)
 
@@ -41,8 +42,9 @@ const struct gz_option gz_shading_options[] = {
 	  .help = "how much fades with the distance to a chosen object" },
 	{ "shading_map.object_distance_mm", GZ_OPTION_DOUBLE, AT(object_distance_mm), 1e-3, 1e6,
 	  .preset = "50", .help = "distance to the chosen object that counts as far, mm" },
-	{ "shading_map.edge_light", GZ_OPTION_DOUBLE, AT(edge_light), 0, 1, .preset = "0.5",
-	  .help = "weight of light along the edges of near objects" },
+	{ "shading_map.edge_light", GZ_OPTION_DOUBLE, AT(edge_light), 0,
+	  GZ_TEMPLATE_EDGE_LIGHT_MOST, .preset = "0.5",
+	  .help = "weight of light along the edges of near objects; more than 1 is extreme" },
 	{ "shading_map.edge_light_width", GZ_OPTION_DOUBLE, AT(edge_light_width), 0, 0.02,
 	  .preset = "0.005", .help = "width of edge light, share of the picture's height" },
 	{ "shading_map.overlap_shadow", GZ_OPTION_DOUBLE, AT(overlap_shadow), 0, 1, .preset = "0.5",

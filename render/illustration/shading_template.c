@@ -20,6 +20,8 @@ const struct gz_option gz_template_options[] = {
 	  .preset = "model", .help = "how much depth shows" },
 	{ "template.foreground", GZ_OPTION_CHOICE, AT(foreground), .choices = level_names,
 	  .preset = "model", .help = "how far the foreground reaches" },
+	{ "template.edge_light", GZ_OPTION_CHOICE, AT(edge_light), .choices = level_names,
+	  .preset = "model", .help = "weight of edge light, instead of that of spatial_effect" },
 };
 const size_t gz_template_option_count = sizeof gz_template_options / sizeof gz_template_options[0];
 
@@ -68,16 +70,17 @@ struct gz_shading_template gz_shading_template_empty(void)
 	return empty;
 }
 
-extern const char gz_template_bone_structures_template[], gz_template_information_template[],
-	gz_template_organs_template[], gz_template_single_bones_template[],
-	gz_template_vessel_trees_template[], gz_template_vessels_template[],
-	gz_template_whole_scene_template[];
+extern const char gz_template_bone_structures_template[], gz_template_highlight_template[],
+	gz_template_information_template[], gz_template_organs_template[],
+	gz_template_single_bones_template[], gz_template_vessel_trees_template[],
+	gz_template_vessels_template[], gz_template_whole_scene_template[];
 
 /* The files of etc/illustration/, as they were when the program was built. */
 static const struct {
 	const char *name, *text;
 } named_templates[] = {
 	{ "bone-structures", gz_template_bone_structures_template },
+	{ "highlight", gz_template_highlight_template },
 	{ "information", gz_template_information_template },
 	{ "organs", gz_template_organs_template },
 	{ "single-bones", gz_template_single_bones_template },
@@ -87,7 +90,8 @@ static const struct {
 };
 
 const char gz_shading_template_names[] =
-	"bone-structures, information, organs, single-bones, vessel-trees, vessels, whole-scene";
+	"bone-structures, highlight, information, organs, single-bones, vessel-trees, vessels, "
+	"whole-scene";
 
 const char *gz_shading_template_name(size_t index)
 {
@@ -120,4 +124,12 @@ void gz_shading_template_apply(const struct gz_shading_template *shading_templat
 	apply_level(shading_template->detail_frequency, &combined->detail_frequency);
 	apply_level(shading_template->spatial_effect, &combined->spatial_effect);
 	apply_level(shading_template->foreground, &combined->foreground);
+}
+
+void gz_shading_template_apply_single(const struct gz_shading_template *shading_template,
+				      struct gz_shading_settings *settings)
+{
+	if (shading_template->edge_light != GZ_TEMPLATE_KEEP)
+		settings->edge_light =
+			GZ_TEMPLATE_EDGE_LIGHT_MOST * shading_template->edge_light / 2.0;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "render/illustration/illustration_look.h"
 #include "render/illustration/shading_settings.h"
 #include "render/illustration/shading_template.h"
 
@@ -107,7 +108,7 @@ static const struct {
 } thesis_templates[] = {
 	{ "whole-scene", "0 ++" },  { "vessels", "+-- " },         { "vessel-trees", "+-+-" },
 	{ "single-bones", "+-- " }, { "bone-structures", "--+0" }, { "organs", "- - " },
-	{ "information", "0-- " },
+	{ "information", "0-- " },  { "highlight", "    " },
 };
 
 static void check_level(char level, double value)
@@ -143,6 +144,38 @@ static void templates_are_those_of_the_thesis(void **state)
 		files += gz_path_ends(entry->d_name, ".template");
 	closedir(folder);
 	assert_int_equal(files, count);
+}
+
+/* Figure 3.20: a template of few settings, which replaces only those. */
+static void template_sets_edge_light_of_an_object_alone(void **state)
+{
+	(void)state;
+	struct gz_illustration_look look = { .source = GZ_ILLUSTRATION_COMBINED };
+	struct gz_option_binding bindings[GZ_ILLUSTRATION_BINDINGS];
+	struct gz_shading_template highlight;
+	struct gz_shading_settings without, with;
+	gz_illustration_look_bind(&look, bindings);
+	for (int i = 0; i < GZ_ILLUSTRATION_BINDINGS; i++)
+		assert_int_equal(gz_options_preset(&bindings[i]), GZ_OK);
+	look.combined.spatial_effect = 0.25;
+	assert_int_equal(gz_shading_template_named("highlight", &highlight), GZ_OK);
+	gz_illustration_look_resolve(&look, NULL, &without);
+	gz_illustration_look_resolve(&look, &highlight, &with);
+	assert_true(without.edge_light == 0.25 && with.edge_light == GZ_TEMPLATE_EDGE_LIGHT_MOST);
+	with.edge_light = without.edge_light;
+	assert_true(gz_options_same(gz_shading_options, gz_shading_option_count, &with, &without));
+	/* as the template of the scene, which an object's replaces */
+	strcpy(look.template_name, "highlight");
+	look.shading_template = highlight;
+	gz_illustration_look_resolve(&look, NULL, &with);
+	assert_true(with.edge_light == GZ_TEMPLATE_EDGE_LIGHT_MOST);
+	highlight.edge_light = GZ_TEMPLATE_SMALL;
+	gz_illustration_look_resolve(&look, &highlight, &with);
+	assert_true(with.edge_light == 0);
+	/* single settings and parameters that are shown alone stay as they are */
+	look.source = GZ_ILLUSTRATION_SINGLE;
+	gz_illustration_look_resolve(&look, &highlight, &with);
+	assert_true(with.edge_light == look.single.edge_light);
 }
 
 static char last_line[1024];
@@ -190,6 +223,7 @@ TEST_SUITE(shading_settings)
 		cmocka_unit_test(combined_settings_stay_within_the_ranges),
 		cmocka_unit_test(combined_settings_go_where_the_thesis_says),
 		cmocka_unit_test(templates_are_those_of_the_thesis),
+		cmocka_unit_test(template_sets_edge_light_of_an_object_alone),
 		cmocka_unit_test(unknown_keys_and_values_are_refused_with_their_line),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
