@@ -155,9 +155,25 @@ static uint32_t vertex_at(const struct net_job *job, struct walk *walk, int32_t 
 									   : GZ_LABEL_NO_VERTEX;
 }
 
-static bool four_same(uint16_t a, uint16_t b, uint16_t c, uint16_t d)
+/* How many labels meet at an edge of the grid, by the four voxels round it: 1, 2, or 3 for more. */
+static int labels_at_edge(uint16_t a, uint16_t b, uint16_t c, uint16_t d)
 {
-	return a == b && a == c && a == d;
+	const uint16_t other = a != b ? b : a != c ? c : d;
+	if (other == a)
+		return 1;
+	return (b == a || b == other) && (c == a || c == other) && (d == a || d == other) ? 2 : 3;
+}
+
+/* Which edges lead to neighbours. On a border, a curve along which three or more labels meet, they
+ * are those of the border alone: the sheets that meet there do not pull it to and fro, and it
+ * becomes as smooth as they are. */
+static void choose_edges(const int labels[6], bool out_edges[6])
+{
+	int border = 0;
+	for (int side = 0; side < 6; side++)
+		border += labels[side] > 2;
+	for (int side = 0; side < 6; side++)
+		out_edges[side] = labels[side] > (border >= 2 ? 2 : 1);
 }
 
 /* Rows beside a row of vertices: of lower and upper y, of lower and upper z, of both lower. */
@@ -171,13 +187,13 @@ static void write_neighbours(const struct net_job *job, const struct voxel_rows 
 	const struct gz_label_net *net = job->net;
 	const int32_t i = net->corners[vertex][0];
 	const uint16_t *const *low = rows->at[0], *const *high = rows->at[1];
-	const bool edges[6] = {
-		!four_same(low[0][i], low[1][i], high[0][i], high[1][i]),
-		!four_same(low[0][i + 1], low[1][i + 1], high[0][i + 1], high[1][i + 1]),
-		!four_same(low[0][i], low[0][i + 1], high[0][i], high[0][i + 1]),
-		!four_same(low[1][i], low[1][i + 1], high[1][i], high[1][i + 1]),
-		!four_same(low[0][i], low[0][i + 1], low[1][i], low[1][i + 1]),
-		!four_same(high[0][i], high[0][i + 1], high[1][i], high[1][i + 1]),
+	const int labels[6] = {
+		labels_at_edge(low[0][i], low[1][i], high[0][i], high[1][i]),
+		labels_at_edge(low[0][i + 1], low[1][i + 1], high[0][i + 1], high[1][i + 1]),
+		labels_at_edge(low[0][i], low[0][i + 1], high[0][i], high[0][i + 1]),
+		labels_at_edge(low[1][i], low[1][i + 1], high[1][i], high[1][i + 1]),
+		labels_at_edge(low[0][i], low[0][i + 1], low[1][i], low[1][i + 1]),
+		labels_at_edge(high[0][i], high[0][i + 1], high[1][i], high[1][i + 1]),
 	};
 	const uint32_t beside[6] = {
 		(uint32_t)vertex - 1,
@@ -187,6 +203,8 @@ static void write_neighbours(const struct net_job *job, const struct voxel_rows 
 		vertex_at(job, &walks->low_z, i),
 		vertex_at(job, &walks->high_z, i),
 	};
+	bool edges[6];
+	choose_edges(labels, edges);
 	for (int side = 0; side < 6; side++)
 		net->neighbours[vertex][side] = edges[side] ? beside[side] : GZ_LABEL_NO_VERTEX;
 }

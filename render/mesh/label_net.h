@@ -22,9 +22,10 @@ struct gz_label_face {
 /** A net. Places are in voxels: corner (i, j, k) lies at (i, j, k), from 0 to dims. */
 struct gz_label_net {
 	size_t vertex_count, face_count;
-	int32_t (*corners)[3];     /**< of each vertex: by rising z, then y, then x */
-	float (*places)[3];        /**< of each vertex */
-	uint32_t (*neighbours)[6]; /**< of each vertex: along -x +x -y +y -z +z */
+	int32_t (*corners)[3]; /**< of each vertex: by rising z, then y, then x */
+	float (*places)[3];    /**< of each vertex */
+	/** Of each vertex, along -x +x -y +y -z +z: those that smoothing draws it to. */
+	uint32_t (*neighbours)[6];
 	struct gz_label_face *faces;
 };
 

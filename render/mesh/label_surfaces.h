@@ -13,9 +13,10 @@
  * it whose ends differ. Then all are smoothed by a filter that removes short waves and keeps long
  * ones, and with them volumes (Taubin, Zhang and Golub, "Optimal surface smoothing as filter
  * design", ECCV 1996): a polynomial in the step from each vertex to the mean of its neighbours
- * along edges. The more steps, the longer the waves that it removes. No vertex ends farther from
- * its corner of voxels than the reach along an axis. On the sides of the volume's box vertices move
- * within them.
+ * along edges. The more steps, the longer the waves that it removes. On a border, a curve along
+ * which three or more labels meet, only neighbours along the border count: drawn by all surfaces
+ * that meet there, it would keep teeth. No vertex ends farther from its corner of voxels than the
+ * reach along an axis. On the sides of the volume's box vertices move within them.
  *
  * Where voxels of one label touch along an edge or at a corner only, its surface touches itself
  * there. The same meshes, bits and order, for any number of threads.

@@ -191,6 +191,71 @@ static void smoothing_with_enough_reach_flattens_terraces(void **state)
 	gz_volume_free(&volume);
 }
 
+/* How far a place lies from a slanted plane that cuts the ball. */
+static double from_cut(double x, double y, double z)
+{
+	return (x - 24 + 2.3 * (y - 24) + 4 * (z - 24) - 10) / sqrt(1 + 2.3 * 2.3 + 4 * 4);
+}
+
+static double cut_ball(int x, int y, int z)
+{
+	return from_centre(x, y, z) < 18.3 ? 1 + (from_cut(x, y, z) > 0) : 0;
+}
+
+static bool mesh_has_place(const struct gz_mesh *mesh, const float place[3])
+{
+	for (size_t i = 0; i < mesh->vertex_count; i++)
+		if (memcmp(mesh->positions[i], place, sizeof mesh->positions[i]) == 0)
+			return true;
+	return false;
+}
+
+/* How far the border of two labels on the surface of the ball strays from the plane, voxels: root
+ * mean square over the vertices that both have, near the surface. */
+static double stray_of_border(const struct gz_label_surfaces *surfaces)
+{
+	const struct gz_mesh *one = &surfaces->items[0].mesh, *two = &surfaces->items[1].mesh;
+	double squares = 0;
+	size_t count = 0;
+	for (size_t i = 0; i < one->vertex_count; i++) {
+		double at[3];
+		for (int axis = 0; axis < 3; axis++) /* places are of the box, from its middle */
+			at[axis] = (double)one->positions[i][axis] + 23.5;
+		if (from_centre(at[0], at[1], at[2]) < 17.6 ||
+		    !mesh_has_place(two, one->positions[i]))
+			continue;
+		squares += pow(from_cut(at[0], at[1], at[2]), 2);
+		count++;
+	}
+	assert_true(count > 50);
+	return sqrt(squares / (double)count);
+}
+
+/* Where two labels meet on the outside of a body, their border had teeth as long as voxels. */
+static void border_of_two_labels_is_smooth_and_keeps_volumes(void **state)
+{
+	(void)state;
+	struct gz_volume volume = make_labels(48, GZ_VOXEL_U8, cut_ball);
+	double voxels[2] = { 0 };
+	for (int i = 0; i < 48 * 48 * 48; i++)
+		for (int label = 1; label <= 2; label++)
+			voxels[label - 1] += ((const uint8_t *)volume.voxels)[i] == label;
+	const struct gz_label_look look = { .smoothing = 30, .reach = 1.5 };
+	const struct gz_label_request request = { .volume = &volume,
+						  .name = "labels",
+						  .look = &look };
+	struct gz_label_surfaces surfaces;
+	assert_int_equal(gz_label_surfaces_make(&request, NULL, NULL, &surfaces), GZ_OK);
+	assert_int_equal(surfaces.count, 2);
+	const double stray = stray_of_border(&surfaces);
+	if (stray > 0.25) /* before: 0.33 */
+		fail_msg("the border strays by %.3f voxels", stray);
+	for (int i = 0; i < 2; i++)
+		assert_float_equal(fabs(measure(&surfaces.items[i]).volume) / voxels[i], 1, 0.015);
+	gz_label_surfaces_free(&surfaces);
+	gz_volume_free(&volume);
+}
+
 static void ring_has_one_handle(void **state)
 {
 	(void)state;
@@ -508,6 +573,7 @@ TEST_SUITE(label_surfaces)
 		cmocka_unit_test(ball_keeps_its_volume_and_is_one_closed_surface),
 		cmocka_unit_test(smoothing_flattens_the_stairs_of_a_ball),
 		cmocka_unit_test(smoothing_with_enough_reach_flattens_terraces),
+		cmocka_unit_test(border_of_two_labels_is_smooth_and_keeps_volumes),
 		cmocka_unit_test(ring_has_one_handle),
 		cmocka_unit_test(neighbours_share_their_faces_with_opposite_orientation),
 		cmocka_unit_test(labels_that_fill_the_volume_fill_its_box),
