@@ -296,6 +296,21 @@ static bool draw_share_setting(const char *name, const char *help, double *share
 	return changed;
 }
 
+/* How it is drawn, or which way its strokes run: "scene" and the names of the scene's setting. */
+static bool draw_said_setting(const char *name, const char *help, const char *const *names,
+			      int *said)
+{
+	gz_widgets_push_id(name);
+	gz_widget_label(gz_paint_plain, name);
+	gz_widget_tooltip(help);
+	gz_widgets_same_line(LABEL_SHARE);
+	gz_widgets_next_width(0);
+	const bool changed = gz_widget_choice("##said", said, names);
+	gz_widget_tooltip(help);
+	gz_widgets_pop_id();
+	return changed;
+}
+
 /* "none", the templates, and a file that the scene names. */
 static bool draw_template_setting(char template_name[GZ_SCENE_FILE_SIZE])
 {
@@ -409,6 +424,11 @@ static enum gz_objects_outcome draw_selected(const struct gz_objects_panel *pane
 	changed |= draw_share_setting("transparency",
 				      "how much of what is behind it shows, in illustrations",
 				      &look.style.transparency);
+	changed |= draw_said_setting("drawing", "how illustrations draw it; scene: as all of it",
+				     gz_illustration_said_drawings, &look.style.drawing);
+	changed |= draw_said_setting("hatch direction",
+				     "which way its strokes run: along tubes and ridges, or around",
+				     gz_illustration_said_directions, &look.style.hatch_direction);
 	changed |= draw_template_setting(look.template_name);
 	gz_widgets_enable();
 	enum gz_objects_outcome outcome =
