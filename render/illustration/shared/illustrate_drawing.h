@@ -44,7 +44,7 @@ struct gz_illustrate_drawing {
 	size_t room;          /**< pixels of these four */
 	/** Of objects from 1 on: which are grey, and which are hatched. */
 	bool *grey_ids, *hatched_ids;
-	size_t ids_room; /**< of both */
+	size_t ids_room;                         /**< of both */
 	const struct gz_illustration_look *look; /**< of the picture, while it is made; borrowed */
 	bool begun;                              /**< there is a layer of several */
 	const float *shown_lines; /**< the lines of the picture: one of the two planes above */
