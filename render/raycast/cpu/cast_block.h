@@ -19,7 +19,8 @@
  * Along x, neighbours are weighted in whole numbers of 1/32767, where one multiplication serves
  * both of a lane's voxels; beyond 256 voxels single-precision places are coarser than that. Values
  * leave here in units of 1 / FETCH_UNIT, 16-bit ones less 32768, which the scale of the look-up
- * includes. A value does not depend on whether it came from a block or from single loads.
+ * includes. A value does not depend on whether it came from a block or from single loads,
+ * but for 2^-22 where a place is at or beyond the last datum along an axis.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_BLOCK_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_BLOCK_H
@@ -51,9 +52,10 @@ SIMD int blocks_fit(const struct gz_cast *cast, enum gz_voxel_type type, int wid
 	       cast->dims[2] >= BLOCK_EDGE;
 }
 
-/* Load the block whose first voxel holds a place (x, y, z), moved into the volume at its rim. */
-SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, int wide, __m128 place,
-		     struct block *block)
+/* Load the block whose first voxel holds a place (x, y, z), moved into the volume at its rim.
+ * Returns the index of that voxel. */
+SIMD __m128 block_take(const struct gz_cast *cast, enum gz_voxel_type type, int wide, __m128 place,
+		       struct block *block)
 {
 	const __m128 last =
 		_mm_sub_ps(_mm_setr_ps(cast->dims[0], cast->dims[1], cast->dims[2], BLOCK_EDGE),
@@ -69,6 +71,7 @@ SIMD void block_take(const struct gz_cast *cast, enum gz_voxel_type type, int wi
 	const int64_t bytes = type == GZ_VOXEL_U8 ? 1 : type == GZ_VOXEL_U16 ? 2 : 4;
 	const char *voxels = (const char *)cast->voxels + from * bytes;
 	block_load(type, wide, voxels, row, slice, &block->voxels);
+	return base;
 }
 
 /* Move places beyond the first or the last datum to that datum. */

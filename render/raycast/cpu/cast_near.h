@@ -9,6 +9,8 @@
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_NEAR_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_NEAR_H
 
+#include <math.h>
+
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_rays.h"
 
@@ -73,15 +75,23 @@ SIMD void near_load(const struct gz_cast *cast, enum gz_voxel_type type, const s
 				   stride[1], stride[2], &near->side[axis][side]);
 }
 
+/* The weighted difference of two pairs of words. Differences of 8-bit values are words, too. */
+SIMD vi weigh_difference(enum gz_voxel_type type, vi before, vi after, vi weights)
+{
+	if (type == GZ_VOXEL_U8)
+		return vi_sum_of_products(vi_subtract_words(after, before), weights);
+	return vi_subtract(vi_sum_of_products(after, weights), vi_sum_of_products(before, weights));
+}
+
 /* One component from its four rows, in the order (y, z) = 00, 10, 01, 11. */
-SIMD vf mix_differences(const vi before[4], const vi after[4], vi weights, const vf share[3])
+SIMD vf mix_differences(enum gz_voxel_type type, const vi before[4], const vi after[4], vi weights,
+			const vf share[3])
 {
 	vf rows[4];
 	for (int i = 0; i < 4; i++)
-		rows[i] = vf_from_i(vi_subtract(vi_sum_of_products(after[i], weights),
-						vi_sum_of_products(before[i], weights))) *
-			  vf_set(1.0F / 32767);
-	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
+		rows[i] = vf_from_i(weigh_difference(type, before[i], after[i], weights));
+	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]) *
+	       vf_set(1.0F / 32767);
 }
 
 /* Trilinear differences from the blocks nearby, of voxels of 8 or 16 bits. Returns 0 if no block
@@ -105,7 +115,7 @@ SIMD int near_differences(const struct gz_cast *cast, enum gz_voxel_type type,
 		vi before[4], after[4];
 		block_pairs(&near->side[axis][0], type, 0, whole, before);
 		block_pairs(&near->side[axis][1], type, 0, whole, after);
-		difference[axis] = mix_differences(before, after, weights, share);
+		difference[axis] = mix_differences(type, before, after, weights, share);
 	}
 	return 1;
 }
@@ -156,7 +166,7 @@ SIMD void difference_words(const struct gz_cast *cast, enum gz_voxel_type type, 
 		}
 	}
 	for (int axis = 0; axis < 3; axis++)
-		difference[axis] = mix_differences(before[axis], after[axis], weights, share);
+		difference[axis] = mix_differences(type, before[axis], after[axis], weights, share);
 }
 
 #endif

@@ -375,8 +375,9 @@ SIMD void light_surfaces(const struct gz_cast *cast, const struct view *view, co
 			 vm mask, vf gradient[3], vf arriving, struct lighting *lighting)
 {
 	const vf length2 = dot_lanes(gradient, gradient);
-	lighting->weight = length2 / (length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
-	const vf inverse = vf_set(1) / vf_sqrt(vf_max(length2, vf_set(1e-30F)));
+	lighting->weight =
+		length2 * vf_inverse(length2 + vf_set(GZ_LIGHT_GRADIENT * GZ_LIGHT_GRADIENT));
+	const vf inverse = vf_inverse_root(vf_max(length2, vf_set(1e-30F)));
 	for (int axis = 0; axis < 3; axis++)
 		gradient[axis] = gradient[axis] * inverse;
 	vf occlusion = vf_set(0);

@@ -183,12 +183,38 @@ SIMD int list_levels(const struct gz_cast *cast, const struct beam *beam, float 
 	return count > 0;
 }
 
-/* Load the block of a level. */
-SIMD void beam_block(const struct march *m, int wide, const struct beam *beam, float level,
-		     struct block *block)
+/* The box around all rays at a level. */
+SIMD void beam_box(const struct beam *beam, float level, __m128 *low, __m128 *high)
 {
-	block_take(m->cast, m->reading.type, wide,
-		   _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low), block);
+	*low = _mm_fmadd_ps(_mm_set1_ps(level), beam->low_step, beam->low);
+	*high = _mm_fmadd_ps(_mm_set1_ps(level), beam->high_step, beam->high);
+}
+
+/* Cells along the edges of a block. */
+SIMD __m128 block_cells(int wide)
+{
+	return _mm_setr_ps(block_edge(wide, 0) - 1, BLOCK_EDGE - 1, BLOCK_EDGE - 1, 1);
+}
+
+/* Whether the block that begins at `base` holds the beam at a level. */
+SIMD int block_serves(int wide, const struct beam *beam, float level, __m128 base)
+{
+	__m128 low, high;
+	beam_box(beam, level, &low, &high);
+	const __m128 beyond = _mm_cmple_ps(_mm_add_ps(base, block_cells(wide)), high);
+	return (_mm_movemask_ps(_mm_or_ps(_mm_cmplt_ps(low, base), beyond)) & 7) == 0;
+}
+
+/* Load the block of a level. It begins so that it holds the beam as far ahead as it can. Returns
+ * where. */
+SIMD __m128 beam_block(const struct march *m, int wide, const struct beam *beam, float level,
+		       struct block *block)
+{
+	__m128 low, high;
+	beam_box(beam, level, &low, &high);
+	const __m128 backward = _mm_sub_ps(_mm_add_ps(high, _mm_set1_ps(1)), block_cells(wide));
+	return block_take(m->cast, m->reading.type, wide,
+			  _mm_blendv_ps(low, backward, beam->low_step), block);
 }
 
 /* The values at k of the needed lanes, from the block if it holds them. */
@@ -238,9 +264,8 @@ SIMD uint32_t take_level(const struct march *m, const struct look_up *look_up, i
 	return samples;
 }
 
-/* Take the samples of listed levels by blocks. The block of the next sample is loaded while the
- * present one is interpolated, and its colour is looked up during the next one: a processor that
- * runs a dozen loads ahead, but not two samples, is never idle. */
+/* Take the samples of listed levels by blocks. A sample's colour is looked up during the next one:
+ * a processor that runs a dozen loads ahead, but not two samples, is never idle. */
 SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up, int wide,
 			    const struct beam *beam, const struct level_list *list,
 			    struct progress *on)
@@ -248,13 +273,13 @@ SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up
 	const float *levels = list->levels;
 	const int count = list->count;
 	uint32_t samples = 0;
-	struct block block, next;
-	beam_block(m, wide, beam, levels[0], &block);
+	struct block block;
+	__m128 base = beam_block(m, wide, beam, levels[0], &block);
 	for (int i = 0; i < count && beam_alive(on, beam_parts(beam)); i++) {
-		beam_block(m, wide, beam, levels[i + 1 < count ? i + 1 : i], &next);
+		if (!block_serves(wide, beam, levels[i], base))
+			base = beam_block(m, wide, beam, levels[i], &block);
 		for (int part = 0; part < beam_parts(beam); part++)
 			samples += take_level(m, look_up, wide, beam, levels[i], &block, part, on);
-		block = next;
 	}
 	return samples;
 }

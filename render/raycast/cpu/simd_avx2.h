@@ -39,6 +39,18 @@ SIMD vf vf_sqrt(vf a)
 {
 	return _mm256_sqrt_ps(a);
 }
+/* 1 / a and 1 / sqrt(a) to 2^-22: the processor's estimates and a step of Newton's. */
+SIMD vf vf_inverse(vf a)
+{
+	const vf estimate = _mm256_rcp_ps(a);
+	return estimate * _mm256_fnmadd_ps(estimate, a, vf_set(2));
+}
+SIMD vf vf_inverse_root(vf a)
+{
+	const vf estimate = _mm256_rsqrt_ps(a);
+	const vf half = estimate * vf_set(0.5F);
+	return half * _mm256_fnmadd_ps(estimate * a, estimate, vf_set(3));
+}
 SIMD vf vf_ceil(vf a)
 {
 	return _mm256_ceil_ps(a);
@@ -237,6 +249,10 @@ SIMD int vf_store_packed(float *x, vf a, vm mask)
 	for (unsigned bits = (unsigned)_mm256_movemask_ps(mask); bits; bits &= bits - 1)
 		x[count++] = lane[__builtin_ctz(bits)];
 	return count;
+}
+SIMD vi vi_subtract_words(vi a, vi b)
+{
+	return _mm256_sub_epi16(a, b);
 }
 SIMD vi vi_subtract(vi a, vi b)
 {

@@ -41,6 +41,18 @@ SIMD vf vf_sqrt(vf a)
 {
 	return _mm512_sqrt_ps(a);
 }
+/* 1 / a and 1 / sqrt(a) to 2^-22: the processor's estimates and a step of Newton's. */
+SIMD vf vf_inverse(vf a)
+{
+	const vf estimate = _mm512_rcp14_ps(a);
+	return estimate * _mm512_fnmadd_ps(estimate, a, vf_set(2));
+}
+SIMD vf vf_inverse_root(vf a)
+{
+	const vf estimate = _mm512_rsqrt14_ps(a);
+	const vf half = estimate * vf_set(0.5F);
+	return half * _mm512_fnmadd_ps(estimate * a, estimate, vf_set(3));
+}
 SIMD vf vf_ceil(vf a)
 {
 	return _mm512_roundscale_ps(a, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
@@ -230,6 +242,10 @@ SIMD int vf_store_packed(float *x, vf a, vm mask)
 {
 	vf_store(x, _mm512_maskz_compress_ps(mask, a));
 	return __builtin_popcount(mask);
+}
+SIMD vi vi_subtract_words(vi a, vi b)
+{
+	return _mm512_sub_epi16(a, b);
 }
 SIMD vi vi_subtract(vi a, vi b)
 {

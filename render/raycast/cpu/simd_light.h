@@ -40,7 +40,7 @@ SIMD vf log2_positive(vf x)
 	const vi bits = vi_add(vi_bits(x), vi_set(0x3F800000 - root_half));
 	const vf whole = vf_from_i(vi_add(vi_shift_right(bits, 23), vi_set(-127)));
 	const vf m = vf_bits(vi_add(vi_and(bits, vi_set(0x7FFFFF)), vi_set(root_half)));
-	const vf z = (m - vf_set(1)) / (m + vf_set(1));
+	const vf z = (m - vf_set(1)) * vf_inverse(m + vf_set(1));
 	const vf z2 = z * z;
 	vf p = vf_set(1.0F / 9);
 	p = vf_fma(p, z2, vf_set(1.0F / 7));

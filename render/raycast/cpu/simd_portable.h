@@ -64,6 +64,15 @@ SIMD vf vf_sqrt(vf a)
 	EACH_LANE a[lane] = sqrtf(a[lane]);
 	return a;
 }
+/* 1 / a and 1 / sqrt(a) */
+SIMD vf vf_inverse(vf a)
+{
+	return 1 / a;
+}
+SIMD vf vf_inverse_root(vf a)
+{
+	return 1 / vf_sqrt(a);
+}
 SIMD vf vf_ceil(vf a)
 {
 	EACH_LANE a[lane] = ceilf(a[lane]);
