@@ -4,10 +4,12 @@
     apt-get install python3-vtk9 python3-numpy zstd xvfb xauth
     xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/study/head.scene
     xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/study/head.scene --vtk gpu --backend gl
+    xvfb-run -a /usr/bin/python3 bench/peers/compare_vtk.py etc/scenes/study/head.scene --simd avx2 --lit
 
-VTK and `standard` cast one ray a pixel at the scene's sampling rate without shading while the camera turns by
-0.01 degrees a frame, so that nothing is reused; `acuity` does so with the gaze at the object's centre and at
-four places around it. Prints the median milliseconds of each whole frame, how many times as long VTK takes, and
+VTK and `standard` cast one ray a pixel at the scene's sampling rate without shading or, with --lit, with the scene's
+light, while the camera turns by 0.01 degrees a frame, so that nothing is reused; `acuity` does so with the gaze at
+the object's centre and at four places around it. The scene's clip box, pre-integration, occlusion and shadows are
+left out. Prints the median milliseconds of each whole frame, how many times as long VTK takes, and
 the peak signal-to-noise ratio between the pictures of VTK and `standard` of the scene's own camera. VTK knows
 no orientation and puts the box between the outer voxel centres, so pictures of oriented volumes differ by that.
 """
@@ -35,6 +37,8 @@ def read_arguments():
     parser.add_argument("scene")
     parser.add_argument("--vtk", choices=["cpu", "gpu"], default="cpu", help="VTK's ray caster")
     parser.add_argument("--backend", choices=["cpu", "gl"], default="cpu", help="gazeview's")
+    parser.add_argument("--simd", default="auto", help="instruction set of gazeview's cpu backend")
+    parser.add_argument("--lit", action="store_true", help="with the light of the scene")
     parser.add_argument("--size", default="1024x1024")
     parser.add_argument("--pairs", type=int, default=3, help="rounds of three frames each")
     parser.add_argument("--gazeview", default="build/release/view/gazeview")
@@ -98,7 +102,29 @@ def place_volume(image):
     return min(spacing) / longest
 
 
-def load_transfer(scene, image, voxel):
+def light_look(scene, look):
+    """The surfaces of gazeview's [light], by its presets where the scene says nothing."""
+    look.ShadeOn()
+    look.SetAmbient(float(scene.text("light", "ambient", "0.35")))
+    look.SetDiffuse(float(scene.text("light", "diffuse", "0.65")))
+    look.SetSpecular(float(scene.text("light", "specular", "0.25")))
+    look.SetSpecularPower(float(scene.text("light", "shininess", "24")))
+
+
+def scene_light(scene):
+    """The distant light of the scene. A camera light's place is counted from the viewer's axes, as is ours."""
+    light = vtk.vtkLight()
+    if scene.text("light", "frame", "camera") == "camera":
+        light.SetLightTypeToCameraLight()
+    else:
+        light.SetLightTypeToSceneLight()
+    light.PositionalOff()
+    light.SetPosition(*scene.numbers("light", "direction", "-0.3 0.5 1"))
+    light.SetFocalPoint(0, 0, 0)
+    return light
+
+
+def load_transfer(scene, image, voxel, lit=False):
     low, high = image.GetScalarRange()
     colour, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
     for line in open(scene.file("transfer"), encoding="utf-8"):
@@ -115,6 +141,8 @@ def load_transfer(scene, image, voxel):
     look.SetScalarOpacityUnitDistance(voxel)
     look.SetInterpolationTypeToLinear()
     look.ShadeOff()
+    if lit:
+        light_look(scene, look)
     return look
 
 
@@ -133,21 +161,24 @@ def make_mapper(kind, image, step):
     return mapper
 
 
-def make_volume(scene, kind):
+def make_volume(scene, kind, lit=False):
     image = load_volume(scene)
     voxel = place_volume(image)
     volume = vtk.vtkVolume()
     step = voxel / float(scene.text("render", "ray_sampling_rate", "1.5"))
     volume.SetMapper(make_mapper(kind, image, step))
-    volume.SetProperty(load_transfer(scene, image, voxel))
+    volume.SetProperty(load_transfer(scene, image, voxel, lit))
     return volume
 
 
 class VtkWindow:
     """What is shown, in our world, seen by the scene's camera."""
 
-    def __init__(self, scene, shown, width, height):
+    def __init__(self, scene, shown, width, height, lit=False):
         renderer = vtk.vtkRenderer()
+        if lit:
+            renderer.AutomaticLightCreationOff()
+            renderer.AddLight(scene_light(scene))
         renderer.AddViewProp(shown)
         renderer.SetBackground(*scene.numbers("render", "background", "0 0 0"))
         self.window = vtk.vtkRenderWindow()
@@ -192,12 +223,18 @@ def read_picture(path):
     return pixels_of(reader.GetOutput())
 
 
+def volume_options(lit, simd):
+    """gazeview's, so that it draws what VTK draws."""
+    return ["--simd", simd, "--render.shading", "gradient" if lit else "none", "--render.integration", "sampled",
+            "--light.occlusion", "0", "--light.shadow_steps", "0", "--clip.least", "0 0 0", "--clip.greatest", "1 1 1"]
+
+
 def gazeview(arguments, method, gaze):
-    """Times of three frames, and the picture of the scene's own camera. Arguments: gazeview, scene, size and
-    backend."""
+    """Times of three frames, and the picture of the scene's own camera. Arguments: gazeview, scene, size,
+    backend and, for volumes, options."""
     with tempfile.TemporaryDirectory() as folder:
         times, path = run_gazeview(arguments.gazeview, arguments.scene, arguments.size, arguments.backend, method,
-                                   gaze, 4, folder)
+                                   gaze, 4, folder, getattr(arguments, "options", ()))
         return times, read_picture(path)
 
 
@@ -213,19 +250,23 @@ def measure(arguments, peer):
     return series, picture
 
 
+def psnr_db(ours, theirs):
+    error = numpy.mean((ours - theirs) ** 2)
+    return 10 * math.log10(255 ** 2 / error) if error else math.inf
+
+
 def main():
     arguments = read_arguments()
+    arguments.options = volume_options(arguments.lit, arguments.simd)
     width, height = [int(side) for side in arguments.size.split("x")]
     scene = Scene(arguments.scene)
-    peer = VtkWindow(scene, make_volume(scene, arguments.vtk), width, height)
+    peer = VtkWindow(scene, make_volume(scene, arguments.vtk, arguments.lit), width, height, arguments.lit)
     their_picture = peer.picture()
     series, our_picture = measure(arguments, peer)
-    error = numpy.mean((our_picture - their_picture) ** 2)
-    psnr = 10 * math.log10(255 ** 2 / error) if error else math.inf
     print(f"VTK {vtk.vtkVersion.GetVTKVersion()} {arguments.vtk} {arguments.size}: "
           f"{statistics.median(series.peer):.1f} ms")
     print("\n".join(series.lines()))
-    print(f"psnr_db {psnr:.2f}")
+    print(f"psnr_db {psnr_db(our_picture, their_picture):.2f}")
 
 
 if __name__ == "__main__":

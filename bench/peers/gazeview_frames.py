@@ -8,12 +8,13 @@ import subprocess
 GAZES = ("centre", "0.5,0.05", "0.9,0.275", "0.1,0.725", "0.5,0.95")
 
 
-def run_gazeview(gazeview, scene, size, backend, method, gaze, frames, folder):
-    """Milliseconds of each frame but the first, which reads the volume, and the first frame's picture."""
+def run_gazeview(gazeview, scene, size, backend, method, gaze, frames, folder, options=()):
+    """Milliseconds of each frame but the first, which reads the volume, and the first frame's picture. `options`
+    are more arguments of gazeview."""
     pattern, stats = os.path.join(folder, method + "-%d.png"), os.path.join(folder, "stats.json")
     subprocess.run([gazeview, "--headless", "--scene", scene, "--size", size, "--gaze", gaze, "--method", method,
                     "--backend", backend, "--turn", "0.01", "--frames", str(frames), "--out", pattern,
-                    "--stats", stats], check=True, stdout=subprocess.DEVNULL)
+                    "--stats", stats, *options], check=True, stdout=subprocess.DEVNULL)
     with open(stats, encoding="utf-8") as source:
         made = json.load(source)["frames"]
     if any(frame["method"] != method or frame["backend"] != backend for frame in made):
