@@ -51,7 +51,7 @@ def run_ms(arguments, frames):
     started = children_ms()
     subprocess.run([arguments.gazeview, "--headless", "--scene", arguments.scene, "--size", arguments.size, "--gaze",
                     "centre", "--method", "standard", "--turn", "0.01", "--frames", str(frames), *arguments.options],
-                   check=True, stdout=subprocess.DEVNULL)
+                   check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return children_ms() - started
 
 
