@@ -34,7 +34,7 @@ static enum gz_result trace_body(enum drawn_body body)
 	const struct gz_mesh *mesh = &meshes[body];
 	struct gz_mesh_points points;
 	float(*around)[3] = calloc(mesh->vertex_count, sizeof *around);
-	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, &points);
+	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, NULL, &points);
 	assert_non_null(around);
 	for (size_t i = 0; i < mesh->vertex_count; i++) {
 		around[i][0] = mesh->normals[i][2];
@@ -44,7 +44,7 @@ static enum gz_result trace_body(enum drawn_body body)
 		if (layer == 1)
 			gz_hatch_cross_directions(mesh, (const float(*)[3])around, around);
 		result = gz_hatch_strokes_make(mesh, (const float(*)[3])around, &points,
-					       DISTANCE_MM, &strokes_of[body][layer]);
+					       DISTANCE_MM, NULL, &strokes_of[body][layer]);
 	}
 	free(around);
 	gz_mesh_points_free(&points);
