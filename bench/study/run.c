@@ -441,7 +441,7 @@ static enum gz_result measure_errors(struct measurer *measurer, const struct uni
 				     struct gz_study_row *rows)
 {
 	const struct gz_study *study = measurer->study;
-	double path_errors[GZ_STUDY_LIST_MAX];
+	double path_errors[GZ_STUDY_LIST_MAX] = { 0 };
 	enum gz_result result = GZ_OK;
 	if (study->accuracy == GZ_STUDY_ACCURACY_NONE)
 		return GZ_OK;

@@ -32,24 +32,43 @@ struct gz_temporal_params gz_temporal_default(void)
  * frames that it is the mean of. */
 enum { BETWEEN = 16, MEAN_MAX = 64, UNKNOWN = 255 };
 
+/* The fourth byte of a finished picture. In a history it is the depth of what the pixel shows. */
+#define OPAQUE UINT32_C(0xFF000000)
+
 enum {
 	SHIFTS = GZ_TEMPORAL_SHIFTS,
 	FRAMES = SHIFTS * SHIFTS, /* until every pixel was cast */
-	GRID = 16,                /* px between places where movement is computed; linear between */
 	ROWS_A_PART = 16,
 };
 
-/* How far the camera may turn around the volume within a history, degrees. Chosen: the error stays
- * below that of single frames at any speed (tests/render/test_temporal.c). */
-#define PARALLAX_DEG 0.7
+/* A place of the history counts if what it shows lies no farther before or behind than this, world
+ * units, which are edges of the volume. Chosen: what lies nearer is mostly of the same surface. */
+#define DEPTH_SLACK 0.1
+
+/* Error of the pixels between rays as a share of how much the rays around them differ, squared.
+ * Chosen: what comes out on curved surfaces and within clouds alike (tests/render/test_temporal.c).
+ */
+#define BETWEEN_ERROR2 (1.0F / 32)
+
+/* R, G, B and a depth. */
+typedef float four __attribute__((vector_size(16)));
+typedef int32_t int4 __attribute__((vector_size(16)));
+typedef uint8_t bytes4 __attribute__((vector_size(4)));
+
+/* How the picture moves from the earlier frame to this one. */
+struct movement {
+	struct gz_ray_frame rays, rays_before;
+	struct gz_ray_inverse before;
+	struct gz_ray_depths depths, depths_before;
+};
 
 /* What the threads that join a frame share. */
 struct join {
 	struct gz_temporal *temporal;
 	const struct gz_plan *plan;
-	double weight;
-	const struct gz_camera *before; /* NULL: the camera is still */
-	struct gz_ray_frame rays;
+	float weight;
+	bool moves; /* the camera does */
+	struct movement movement;
 	uint32_t *out;
 };
 
@@ -210,45 +229,145 @@ static void join_still(uint8_t *pixel, uint8_t *kept, const uint8_t *now, uint8_
 	*kept = (uint8_t)(BETWEEN + (frames < MEAN_MAX ? frames + 1 : MEAN_MAX));
 }
 
-/* Least and greatest value of each channel in the 3x3 pixels a spacing apart around a pixel. */
-static void neighbourhood_range(const struct join *join, int x, int y, int spacing, int least[4],
-				int greatest[4])
+/* ---- a camera that moves ---- */
+
+static int within(int i, int count)
+{
+	return i < 0 ? 0 : i < count ? i : count - 1;
+}
+
+static four four_of(const uint8_t *pixel)
+{
+	bytes4 bytes;
+	memcpy(&bytes, pixel, sizeof bytes);
+	return __builtin_convertvector(bytes, four);
+}
+
+static four select_four(int4 mask, four a, four b)
+{
+	return (four)((mask & (int4)a) | (~mask & (int4)b));
+}
+
+static four least_of(four a, four b)
+{
+	return select_four(a < b, a, b);
+}
+
+static four greatest_of(four a, four b)
+{
+	return select_four(a > b, a, b);
+}
+
+/* Of red, green and blue. */
+static float squares_of(four x)
+{
+	const four square = x * x;
+	return square[0] + square[1] + square[2];
+}
+
+/* Least and greatest colours in the 3x3 pixels a spacing apart around a pixel. */
+static void neighbourhood_range(const struct join *join, int x, int y, int spacing, four *least,
+				four *greatest)
 {
 	const struct gz_temporal *temporal = join->temporal;
-	for (int c = 0; c < 4; c++) {
-		least[c] = 255;
-		greatest[c] = 0;
-	}
+	*least = *greatest = four_of(frame_pixel(temporal, x, y));
 	for (int k = 0; k < 9; k++) {
-		int at_x = x + (k % 3 - 1) * spacing, at_y = y + (k / 3 - 1) * spacing;
-		at_x = at_x < 0 ? 0 : at_x < temporal->width ? at_x : temporal->width - 1;
-		at_y = at_y < 0 ? 0 : at_y < temporal->height ? at_y : temporal->height - 1;
-		const uint8_t *near = frame_pixel(temporal, at_x, at_y);
-		for (int c = 0; c < 4; c++) {
-			least[c] = near[c] < least[c] ? near[c] : least[c];
-			greatest[c] = near[c] > greatest[c] ? near[c] : greatest[c];
-		}
+		const int at_x = within(x + (k % 3 - 1) * spacing, temporal->width);
+		const int at_y = within(y + (k / 3 - 1) * spacing, temporal->height);
+		const four near = four_of(frame_pixel(temporal, at_x, at_y));
+		*least = least_of(*least, near);
+		*greatest = greatest_of(*greatest, near);
 	}
 }
 
-/* One pixel while the camera moves. A ray's colour is taken; between rays the history is mixed in,
- * clamped to the range of the frame's neighbourhood. */
-static void join_moved(const struct join *join, int x, int y, uint8_t *pixel, uint8_t *kept,
-		       uint8_t cast)
+/* The pixels between four places of a lattice, at some of which rays were cast. */
+struct cell {
+	int left, top, spacing; /* spacing 0: none */
+	size_t rays[4];         /* their pixels */
+	int count;
+	float error2; /* of the pixels between them */
+};
+
+/* Find the cell of a pixel, unless it is this one already. */
+static void find_cell(const struct join *join, int x, int y, int spacing, struct cell *cell)
 {
-	const uint8_t *now = frame_pixel(join->temporal, x, y);
-	if (cast < BETWEEN || *kept == UNKNOWN) {
-		memcpy(pixel, now, 4);
-	} else {
-		int least[4], greatest[4];
-		const int spacing = join->plan->layers[cast - BETWEEN].spacing;
-		neighbourhood_range(join, x, y, spacing, least, greatest);
-		for (int c = 0; c < 4; c++) {
-			const double before = fmin(fmax(pixel[c], least[c]), greatest[c]);
-			pixel[c] = (uint8_t)(now[c] + (before - now[c]) * join->weight + 0.5);
-		}
+	const struct gz_temporal *temporal = join->temporal;
+	if (cell->spacing == spacing && x - cell->left < spacing)
+		return;
+	*cell = (struct cell) {
+		.left = x - (x + temporal->shift[0]) % spacing,
+		.top = y - (y + temporal->shift[1]) % spacing,
+		.spacing = spacing,
+	};
+	four least = { 255, 255, 255, 255 }, greatest = { 0 };
+	for (int k = 0; k < 4; k++) {
+		const int at_x = cell->left + (k & 1) * spacing;
+		const int at_y = cell->top + (k >> 1) * spacing;
+		if (at_x < 0 || at_y < 0 || at_x >= temporal->width || at_y >= temporal->height)
+			continue;
+		const size_t i = (size_t)at_y * (size_t)temporal->width + (size_t)at_x;
+		if (temporal->cast[i] >= BETWEEN)
+			continue;
+		const four ray = four_of(frame_pixel(temporal, at_x, at_y));
+		least = least_of(least, ray);
+		greatest = greatest_of(greatest, ray);
+		cell->rays[cell->count++] = i;
 	}
-	*kept = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: counts as the mean of 4 frames */
+	if (cell->count > 1)
+		cell->error2 = BETWEEN_ERROR2 * squares_of(greatest - least);
+}
+
+/* How far the history may be trusted in a cell, [0, 1]. It has said what the rays of this frame
+ * would show. The share of two estimates in the best one is that of their errors: of the history,
+ * the mean of what it said. */
+static float trust_in(const struct join *join, const struct cell *cell)
+{
+	const struct gz_temporal *temporal = join->temporal;
+	float sum = 0;
+	if (cell->count == 0 || cell->error2 <= 0)
+		return 0;
+	for (int k = 0; k < cell->count; k++) {
+		const size_t i = cell->rays[k];
+		if (temporal->kept_moved[i] == UNKNOWN)
+			return 0;
+		const int x = (int)(i % (size_t)temporal->width);
+		const int y = (int)(i / (size_t)temporal->width);
+		const float error2 = squares_of(four_of(temporal->moved.pixels + 4 * i) -
+						four_of(frame_pixel(temporal, x, y)));
+		sum += error2;
+	}
+	return cell->error2 / (cell->error2 + sum / (float)cell->count);
+}
+
+/* One pixel while the camera moves. A ray's colour is taken; between rays the moved history is
+ * mixed in, clamped to the range of the frame's neighbourhood, as far as it can be trusted. */
+static void join_moved(const struct join *join, int x, int y, struct cell *cell, float *trust)
+{
+	struct gz_temporal *temporal = join->temporal;
+	const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
+	const uint8_t *now = frame_pixel(temporal, x, y);
+	const uint8_t cast = temporal->cast[i];
+	uint8_t *pixel = temporal->history.pixels + 4 * i;
+	memcpy(pixel, now, 4);
+	temporal->kept[i] = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: of 4 frames */
+	if (cast < BETWEEN || temporal->kept_moved[i] == UNKNOWN)
+		return;
+	const int spacing = join->plan->layers[cast - BETWEEN].spacing, left = cell->left;
+	const bool known = cell->spacing == spacing;
+	find_cell(join, x, y, spacing, cell);
+	if (!known || cell->left != left)
+		*trust = trust_in(join, cell);
+	const float weight = join->weight * *trust;
+	if (weight <= 0)
+		return;
+	four least, greatest;
+	neighbourhood_range(join, x, y, spacing, &least, &greatest);
+	const four before =
+		least_of(greatest_of(four_of(temporal->moved.pixels + 4 * i), least), greatest);
+	const four here = four_of(now);
+	const four mixed = here + (before - here) * weight + 0.5F;
+	for (int c = 0; c < 3; c++)
+		pixel[c] = (uint8_t)mixed[c];
 }
 
 static void join_history_rows(void *user, size_t part, int worker)
@@ -259,129 +378,168 @@ static void join_history_rows(void *user, size_t part, int worker)
 	const int from = (int)part * ROWS_A_PART;
 	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++) {
 		const size_t row = (size_t)y * (size_t)temporal->width;
+		struct cell cell = { 0 };
+		float trust = 0;
 		for (int x = 0; x < temporal->width; x++) {
 			const size_t i = row + (size_t)x;
 			uint8_t *pixel = temporal->history.pixels + 4 * i;
-			if (join->before)
-				join_moved(join, x, y, pixel, &temporal->kept[i],
-					   temporal->cast[i]);
+			if (join->moves)
+				join_moved(join, x, y, &cell, &trust);
 			else
 				join_still(pixel, &temporal->kept[i], frame_pixel(temporal, x, y),
 					   temporal->cast[i]);
 		}
-		memcpy(join->out + row, temporal->history.pixels + 4 * row,
-		       (size_t)temporal->width * 4);
+		const uint32_t *history = gz_image_words(&temporal->history) + row;
+		for (int x = 0; x < temporal->width; x++)
+			join->out[row + (size_t)x] = history[x] | OPAQUE;
 	}
 }
 
-/* The place in the earlier frame of what pixel (x, y) shows now. Rays do not know the depth of
- * their colour, so the point of the ray nearest to the volume's centre stands for it. NAN: not in
- * view. */
-static void find_movement(const struct join *join, int x, int y, double place[2])
+static double depth_of(const struct gz_ray_depths *depths, uint8_t byte)
 {
-	double origin[3], direction[3], world[3], along = 0, length2 = 0;
+	return depths->nearest + (depths->farthest - depths->nearest) * byte / 255;
+}
+
+/* Pixel (x, y) of the rays: where its ray begins and goes. Returns the length of the direction. */
+static double ray_of(const struct gz_ray_frame *rays, double x, double y, double origin[3],
+		     double direction[3])
+{
+	double length2 = 0;
 	for (int axis = 0; axis < 3; axis++) {
-		origin[axis] = join->rays.origin00[axis] + x * join->rays.origin_dx[axis] +
-			       y * join->rays.origin_dy[axis];
-		direction[axis] = join->rays.direction00[axis] + x * join->rays.direction_dx[axis] +
-				  y * join->rays.direction_dy[axis];
-		along -= origin[axis] * direction[axis];
+		origin[axis] = rays->origin00[axis] + x * rays->origin_dx[axis] +
+			       y * rays->origin_dy[axis];
+		direction[axis] = rays->direction00[axis] + x * rays->direction_dx[axis] +
+				  y * rays->direction_dy[axis];
 		length2 += direction[axis] * direction[axis];
 	}
-	for (int axis = 0; axis < 3; axis++)
-		world[axis] = origin[axis] + direction[axis] * fmax(along / length2, 1e-3);
-	struct gz_point point;
-	const int width = join->temporal->width, height = join->temporal->height;
-	if (!gz_camera_project(join->before, width, height, world, &point)) {
-		place[0] = place[1] = NAN;
-		return;
-	}
-	place[0] = (double)point.x * width - 0.5;
-	place[1] = (double)point.y * height - 0.5;
+	return sqrt(length2);
 }
 
-/* A pixel of the history, interpolated between four; false beyond its edges. */
-static bool sample_history(const struct gz_temporal *temporal, double x, double y, uint8_t *pixel)
+/* The place in the earlier picture of what pixel (x, y) shows now, and its depth there. False: not
+ * in view. */
+static bool find_place(const struct movement *movement, int x, int y, uint8_t depth,
+		       double place[2], double *out_depth)
 {
-	if (!(x >= 0 && y >= 0 && x <= temporal->width - 1 && y <= temporal->height - 1))
+	double origin[3], direction[3], world[3], moved[4];
+	const double length = ray_of(&movement->rays, x, y, origin, direction);
+	const double along = depth_of(&movement->depths, depth) / length;
+	for (int axis = 0; axis < 3; axis++)
+		world[axis] = origin[axis] + along * direction[axis];
+	gz_ray_inverse_point(&movement->before, world, moved);
+	if (!(moved[3] > 0))
 		return false;
-	const int x0 = (int)x, y0 = (int)y;
-	const int x1 = x0 + 1 < temporal->width ? x0 + 1 : x0;
-	const int y1 = y0 + 1 < temporal->height ? y0 + 1 : y0;
-	const double u = x - x0, v = y - y0;
-	const uint8_t *above = temporal->history.pixels + 4 * (size_t)y0 * (size_t)temporal->width;
-	const uint8_t *below = temporal->history.pixels + 4 * (size_t)y1 * (size_t)temporal->width;
-	for (int c = 0; c < 4; c++)
-		pixel[c] =
-			(uint8_t)((above[4 * x0 + c] * (1 - u) + above[4 * x1 + c] * u) * (1 - v) +
-				  (below[4 * x0 + c] * (1 - u) + below[4 * x1 + c] * u) * v + 0.5);
+	place[0] = moved[0] / moved[2];
+	place[1] = moved[1] / moved[2];
+	*out_depth =
+		moved[3] * ray_of(&movement->rays_before, place[0], place[1], origin, direction);
 	return true;
 }
 
-/* Move rows of the history to where the camera sees them now, one square of the grid at a time. */
+/* Weights of four pixels in a row for a place between the second and the third: Catmull-Rom. */
+static void cubic_weights(float t, float out_weights[4])
+{
+	out_weights[0] = ((1 - 0.5F * t) * t - 0.5F) * t;
+	out_weights[1] = (1.5F * t - 2.5F) * t * t + 1;
+	out_weights[2] = ((2 - 1.5F * t) * t + 0.5F) * t;
+	out_weights[3] = (0.5F * t - 0.5F) * t * t;
+}
+
+/* The history at a place within it. */
+static four sample_history(const struct gz_temporal *temporal, const double place[2])
+{
+	const int x = (int)place[0], y = (int)place[1];
+	const int width = temporal->width, height = temporal->height;
+	float across[4], down[4];
+	four sum = { 0 };
+	cubic_weights((float)(place[0] - x), across);
+	cubic_weights((float)(place[1] - y), down);
+	for (int row = 0; row < 4; row++) {
+		const uint8_t *pixels = temporal->history.pixels +
+					4 * (size_t)within(y + row - 1, height) * (size_t)width;
+		four of_row = { 0 };
+		for (int column = 0; column < 4; column++)
+			of_row += across[column] *
+				  four_of(pixels + 4 * within(x + column - 1, width));
+		sum += down[row] * of_row;
+	}
+	return sum;
+}
+
+/* What the history shows of a pixel. False: it does not show that. */
+static bool move_pixel(const struct join *join, int x, int y, uint8_t *pixel)
+{
+	const struct gz_temporal *temporal = join->temporal;
+	const int width = temporal->width, height = temporal->height;
+	double place[2], depth;
+	if (!find_place(&join->movement, x, y, frame_pixel(temporal, x, y)[3], place, &depth) ||
+	    !(place[0] >= 0 && place[1] >= 0 && place[0] <= width - 1 && place[1] <= height - 1))
+		return false;
+	const size_t nearest = (size_t)(place[1] + 0.5) * (size_t)width + (size_t)(place[0] + 0.5);
+	const double shown =
+		depth_of(&join->movement.depths_before, temporal->history.pixels[4 * nearest + 3]);
+	if (!(fabs(shown - depth) <= DEPTH_SLACK))
+		return false;
+	const four none = { 0 }, value = sample_history(temporal, place);
+	const four rounded = least_of(greatest_of(value, none), none + 255) + 0.5F;
+	for (int c = 0; c < 4; c++)
+		pixel[c] = (uint8_t)rounded[c];
+	return true;
+}
+
+/* Whether the history of a pixel is asked for: where rays lie apart, and between them where they
+ * differ. */
+static bool asks_history(const struct join *join, int x, int y, uint8_t cast, struct cell *cell)
+{
+	if (cast == UNKNOWN)
+		return false;
+	if (cast < BETWEEN)
+		return join->plan->layers[cast].spacing > 1;
+	find_cell(join, x, y, join->plan->layers[cast - BETWEEN].spacing, cell);
+	return cell->error2 > 0;
+}
+
+/* Move rows of the history to where the camera sees them now. */
 static void move_rows(void *user, size_t part, int worker)
 {
 	(void)worker;
 	const struct join *join = user;
 	struct gz_temporal *temporal = join->temporal;
-	const int top = (int)part * GRID;
-	for (int left = 0; left < temporal->width; left += GRID) {
-		double corners[4][2];
-		for (int k = 0; k < 4; k++)
-			find_movement(join, left + (k & 1) * GRID, top + (k >> 1) * GRID,
-				      corners[k]);
-		for (int y = top; y < top + GRID && y < temporal->height; y++)
-			for (int x = left; x < left + GRID && x < temporal->width; x++) {
-				const double u = (double)(x - left) / GRID;
-				const double v = (double)(y - top) / GRID;
-				double at[2];
-				for (int axis = 0; axis < 2; axis++)
-					at[axis] = (corners[0][axis] * (1 - u) +
-						    corners[1][axis] * u) *
-							   (1 - v) +
-						   (corners[2][axis] * (1 - u) +
-						    corners[3][axis] * u) *
-							   v;
-				const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
-				const bool known = sample_history(temporal, at[0], at[1],
-								  temporal->moved.pixels + 4 * i);
-				temporal->kept_moved[i] = known ? BETWEEN : UNKNOWN;
-			}
+	const int from = (int)part * ROWS_A_PART;
+	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++) {
+		struct cell cell = { 0 };
+		for (int x = 0; x < temporal->width; x++) {
+			const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
+			const bool known = asks_history(join, x, y, temporal->cast[i], &cell) &&
+					   move_pixel(join, x, y, temporal->moved.pixels + 4 * i);
+			temporal->kept_moved[i] = known ? BETWEEN : UNKNOWN;
+		}
 	}
 }
 
-/* Angle that the camera moved around the volume's centre. */
-static double parallax_deg(const struct gz_camera *before, const struct gz_camera *now)
+/* Find how the picture moves. False: nothing can be known of it. */
+static bool find_movement(const struct gz_temporal *temporal,
+			  const struct gz_temporal_content *content, struct movement *out_movement)
 {
-	double product = 0, before2 = 0, now2 = 0;
-	for (int axis = 0; axis < 3; axis++) {
-		product += before->eye[axis] * now->eye[axis];
-		before2 += before->eye[axis] * before->eye[axis];
-		now2 += now->eye[axis] * now->eye[axis];
-	}
-	const double cosine = product / sqrt(before2 * now2);
-	return cosine >= 1 ? 0 : cosine > -1 ? acos(cosine) * 180 / M_PI : 180; /* NAN too */
+	const struct gz_camera *before = &temporal->shown.camera, *now = &content->camera;
+	out_movement->depths = gz_camera_ray_depths(now);
+	out_movement->depths_before = gz_camera_ray_depths(before);
+	return content->deep && temporal->shown.deep &&
+	       gz_camera_rays(now, temporal->width, temporal->height, &out_movement->rays) ==
+		       GZ_OK &&
+	       gz_camera_rays(before, temporal->width, temporal->height,
+			      &out_movement->rays_before) == GZ_OK &&
+	       gz_ray_inverse_make(&out_movement->rays_before, &out_movement->before);
 }
 
-/* Content in front of or behind the place that stands for a ray moves differently. A weighted mean
- * reaches back over 1 / (1 - weight) frames; the weight is limited so that the camera turns by at
- * most PARALLAX_DEG within them. */
-static double history_weight(double weight, double deg)
-{
-	return fmax(fmin(weight, 1 - deg / PARALLAX_DEG), 0);
-}
-
-static void move_history(struct join *join)
+static void move_history(struct join *join, const struct gz_temporal_content *content)
 {
 	struct gz_temporal *temporal = join->temporal;
-	gz_workers_run(temporal->workers, move_rows, join,
-		       ((size_t)temporal->height + GRID - 1) / GRID);
-	const struct gz_image image = temporal->history;
-	temporal->history = temporal->moved;
-	temporal->moved = image;
-	uint8_t *const kept = temporal->kept;
-	temporal->kept = temporal->kept_moved;
-	temporal->kept_moved = kept;
+	if (find_movement(temporal, content, &join->movement))
+		gz_workers_run(temporal->workers, move_rows, join,
+			       ((size_t)temporal->height + ROWS_A_PART - 1) / ROWS_A_PART);
+	else
+		memset(temporal->kept_moved, UNKNOWN,
+		       (size_t)temporal->width * (size_t)temporal->height);
 }
 
 enum gz_result gz_temporal_end(struct gz_temporal *temporal,
@@ -400,13 +558,10 @@ enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 	mark_tiles(temporal, plan);
 	if (!temporal->any) {
 		memset(temporal->kept, UNKNOWN, (size_t)temporal->width * (size_t)temporal->height);
-	} else if (!gz_camera_same(&temporal->shown.camera, &content->camera) &&
-		   gz_camera_rays(&content->camera, temporal->width, temporal->height,
-				  &join.rays) == GZ_OK) {
-		join.before = &temporal->shown.camera;
-		join.weight =
-			history_weight(params->weight, parallax_deg(join.before, &content->camera));
-		move_history(&join);
+	} else if (!gz_camera_same(&temporal->shown.camera, &content->camera)) {
+		join.moves = true;
+		join.weight = (float)params->weight;
+		move_history(&join, content);
 		temporal->still_frames = 0;
 	}
 	gz_workers_run(temporal->workers, join_history_rows, &join,

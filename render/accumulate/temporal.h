@@ -39,6 +39,9 @@ struct gz_temporal_params gz_temporal_default(void);
 struct gz_temporal_content {
 	struct gz_camera camera;
 	uint64_t serial; /**< the caller increases it when anything else changes what is shown */
+	/** The fourth byte of frame_image's pixels is a depth (gz_shot.depths), of the range
+	 *  gz_camera_ray_depths(). Otherwise nothing is kept while the camera moves. */
+	bool deep;
 };
 
 /** The history. Zero-initialised is empty; keep it from frame to frame. One thread at a time. */

@@ -161,6 +161,12 @@ static double sampling_rate(const struct gz_picture_request *request)
 	return request->image_sampling_rate > 0 ? request->image_sampling_rate : 1;
 }
 
+/* Whether the technique that makes the picture tells how far away is what its rays show. */
+static bool tells_depths(const struct gz_picture_maker *maker)
+{
+	return maker->drawers.items[maker->drawers.count - 1].technique->tells_depths;
+}
+
 /* Accumulated pictures are dropped when anything but the camera has changed. */
 static enum gz_result note_content(struct making *making)
 {
@@ -180,6 +186,7 @@ static enum gz_result note_content(struct making *making)
 	memcpy(maker->kept_by.settings, request->settings, size);
 	maker->kept_by.foveation = *request->foveation;
 	maker->content.camera = *request->camera;
+	maker->content.deep = tells_depths(maker);
 	return GZ_OK;
 }
 
@@ -282,8 +289,11 @@ static enum gz_result make_plan(struct making *making)
 static enum gz_result draw_or_take_over(struct making *making, struct gz_image *image)
 {
 	struct gz_picture_maker *maker = making->maker;
-	const struct gz_shot shot = shot_of(making);
+	const struct gz_ray_depths depths = gz_camera_ray_depths(making->request->camera);
+	struct gz_shot shot = shot_of(making);
 	const struct gz_drawer *drawer = gz_drawers_last(&maker->drawers);
+	if (making->accumulates && maker->content.deep)
+		shot.depths = &depths;
 	making->on_device = making->on_device && drawer->ops->keeps_on_device(drawer, &shot);
 	enum gz_result result = gz_drawers_draw(
 		&maker->drawers, &shot, making->on_device ? NULL : image, &making->cost.stats);

@@ -328,6 +328,16 @@ static bool same_vector(const double a[3], const double b[3])
 	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
+struct gz_ray_depths gz_camera_ray_depths(const struct gz_camera *camera)
+{
+	/* The world's box has no edge longer than 1, and its centre is the origin. */
+	const double radius = 0.5 * sqrt(3);
+	double forward[3], centre = sqrt(gz_dot3(camera->eye, camera->eye));
+	if (camera->projection == GZ_PROJECTION_ORTHOGRAPHIC && forward_of(camera, forward))
+		centre = -gz_dot3(camera->eye, forward);
+	return (struct gz_ray_depths) { centre - radius, centre + radius };
+}
+
 bool gz_camera_same(const struct gz_camera *a, const struct gz_camera *b)
 {
 	return same_vector(a->eye, b->eye) && same_vector(a->look_at, b->look_at) &&

@@ -99,6 +99,15 @@ void gz_camera_set_projection(struct gz_camera *camera, enum gz_projection proje
  */
 void gz_camera_look_along(struct gz_camera *camera, int axis, bool other);
 
+/** Depths along rays, from where these begin, world units; nearest < farthest. */
+struct gz_ray_depths {
+	double nearest, farthest;
+};
+
+/** Depths at which a ray of the camera can meet the world's box (volume.h). Nearest may be below 0.
+ *  Of a camera that is not valid: any range. */
+struct gz_ray_depths gz_camera_ray_depths(const struct gz_camera *camera);
+
 /** Whether two cameras hold equal values. */
 bool gz_camera_same(const struct gz_camera *a, const struct gz_camera *b);
 

@@ -13,9 +13,10 @@
 
 /** What the 32 bits of a pixel are. */
 enum gz_plane_kind {
-	GZ_PLANE_COLOUR, /**< R, G, B, A from the lowest byte, as in struct gz_image */
-	GZ_PLANE_VALUE,  /**< a float: depth or any other number; INFINITY where there is nothing */
-	GZ_PLANE_ID,     /**< the number of an object; 0 where there is nothing */
+	GZ_PLANE_COLOUR,      /**< R, G, B, A from the lowest byte, as in struct gz_image */
+	GZ_PLANE_DEEP_COLOUR, /**< R, G, B and a depth, which is interpolated as they are */
+	GZ_PLANE_VALUE, /**< a float: depth or any other number; INFINITY where there is nothing */
+	GZ_PLANE_ID,    /**< the number of an object; 0 where there is nothing */
 	GZ_PLANE_KIND_COUNT,
 };
 

@@ -285,6 +285,7 @@ const struct gz_technique gz_raycast_technique = {
 	.objects_max = 1,
 	.backends = raycast_backends,
 	.backends_agree = true,
+	.tells_depths = true,
 	.sharing = GZ_SHARES_AS_CLEAR,
 	.check = gz_raycaster_check,
 	.create = raycast_create,

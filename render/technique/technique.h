@@ -114,6 +114,10 @@ struct gz_shot {
 	const struct gz_plan *plan;
 	/** The same plan, to be refined while it is drawn (gz_plan_refine()); NULL: it is final. */
 	struct gz_plan *refined;
+	/** Of techniques that tell depths: put into each pixel's fourth byte the depth of what is
+	 *  seen there, from 0 for the nearest to 255 for the farthest of this range. Where nothing
+	 *  is seen it is 128. NULL: 255. */
+	const struct gz_ray_depths *depths;
 	/** What others have drawn into the picture; NULL: nothing. GZ_SHARES_AS_OPAQUE: put in what
 	 *  lies nearer. GZ_SHARES_AS_CLEAR: end the rays there, in front of these pixels. */
 	struct gz_ray_hits *hits;
@@ -235,6 +239,7 @@ struct gz_technique {
 	const char *const *backends; /**< names, NULL-terminated, best first on a graphics device */
 	bool backends_agree;         /**< all of them draw the same picture, but for rounding */
 	bool stylised;               /**< draws as an illustrator does: not how matter looks */
+	bool tells_depths;           /**< takes gz_shot.depths; others leave the byte at 255 */
 	bool whole_pictures; /**< a picture depends on all its pixels: it is not made in strips */
 	enum gz_sharing sharing; /**< those that share have settings of one struct */
 	/**

@@ -19,6 +19,7 @@ struct bench {
 	struct gz_temporal_content content;
 	struct gz_plan plan;
 	struct gz_image kept, alone, full;
+	bool flat; /* pixels tell no depths */
 };
 
 static void begin(struct bench *bench)
@@ -62,9 +63,15 @@ static void keep_frame(struct bench *bench)
 			 GZ_OK);
 	assert_int_equal(gz_plan_update(&request, &bench->plan), GZ_OK);
 	gz_temporal_place(&bench->temporal, &bench->plan);
-	assert_int_equal(gz_raycaster_render(bench->renderer, &scene->camera, &scene->rays,
-					     &bench->plan, &bench->temporal.frame_image, NULL),
-			 GZ_OK);
+	const struct gz_ray_depths depths = gz_camera_ray_depths(&scene->camera);
+	const struct gz_shot shot = { .camera = &scene->camera,
+				      .settings = &scene->rays,
+				      .plan = &bench->plan,
+				      .depths = bench->flat ? NULL : &depths };
+	bench->content.deep = !bench->flat;
+	assert_int_equal(
+		gz_raycaster_draw(bench->renderer, &shot, &bench->temporal.frame_image, NULL),
+		GZ_OK);
 	assert_int_equal(gz_temporal_end(&bench->temporal, &bench->params, &bench->content,
 					 &bench->plan, &bench->kept),
 			 GZ_OK);
@@ -98,19 +105,21 @@ static void check_still_picture(int method)
 	bench.scene.foveation.mdc_square_px = 50;
 	render_full(&bench);
 	double last = INFINITY, first = 0;
+	/* On gl rays of a shifted lattice are rounded otherwise, by a level here and there. */
+	const double rounding = strcmp(small_scene_backend(), "gl") == 0 ? 0.02 : 0;
 	for (int frame = 0; frame < GZ_TEMPORAL_SHIFTS * GZ_TEMPORAL_SHIFTS; frame++) {
 		keep_frame(&bench);
 		const double now = error(&bench.kept, &bench.full);
 		first = frame == 0 ? now : first;
 		if (frame % 32 == 0) {
-			if (now > last)
+			if (now > last + rounding)
 				fail_msg("frame %d: error %.4f, before %.4f", frame, now, last);
 			last = now;
 		}
 	}
 	int x, y;
 	const int most = image_difference(&bench.kept, &bench.full, &x, &y);
-	if (first < 0.1 || most != 0)
+	if (first < 0.1 || most > (rounding > 0))
 		fail_msg("%s: first error %.3f; at the end pixel %d %d differs by %d",
 			 gz_method_names[method], first, x, y, most);
 	assert_false(gz_temporal_settling(&bench.temporal));
@@ -200,40 +209,103 @@ static void any_change_drops_the_history(void **state)
 	}
 }
 
-/* Mean error with and without accumulation while the camera turns. */
-static void turn(double deg, double *out_kept, double *out_alone)
+/* Scenes of turns: a cloud, in which many depths are seen at once, and a surface in light that
+ * moves with the camera. */
+enum turned { TURNED_CLOUD, TURNED_SURFACE, TURNED_COUNT };
+
+static void begin_turn(struct bench *bench, enum turned turned)
 {
-	enum { BEFORE = 8, FRAMES = 20 };
+	begin(bench);
+	if (turned == TURNED_CLOUD)
+		return;
+	struct small_scene *scene = &bench->scene;
+	scene->transfer.points[1].opacity = 0;
+	scene->transfer.points[2].opacity = scene->transfer.points[3].opacity = 0.98;
+	scene->rays.shading = GZ_SHADING_GRADIENT;
+	assert_int_equal(gz_raycaster_set_transfer(bench->renderer, &scene->transfer), GZ_OK);
+}
+
+/* The last frame without what was kept. */
+static void frame_by_itself(const struct bench *bench, struct gz_image *image)
+{
+	const struct gz_image *frame = &bench->temporal.frame_image;
+	assert_int_equal(gz_image_resize(image, WIDTH, HEIGHT), GZ_OK);
+	for (int y = 0; y < HEIGHT; y++) {
+		const uint8_t *row =
+			frame->pixels + 4 * ((y + bench->temporal.shift[1]) * frame->width +
+					     bench->temporal.shift[0]);
+		memcpy(image->pixels + 4 * y * WIDTH, row, 4 * WIDTH);
+		for (int x = 0; x < WIDTH; x++)
+			image->pixels[4 * (y * WIDTH + x) + 3] = 255;
+	}
+}
+
+/* Errors with and without what earlier frames saw while the camera turns. */
+struct turn_errors {
+	double kept, alone; /* means over the frames; alone: without accumulation */
+	double worst;       /* of a frame: with, as a share of the same frame without */
+};
+
+static struct turn_errors turn(enum turned turned, double deg)
+{
+	enum { FRAMES = 20 };
 	struct bench bench;
-	begin(&bench);
-	*out_kept = *out_alone = 0;
+	struct turn_errors errors = { 0 };
+	begin_turn(&bench, turned);
 	for (int frame = 0; frame < FRAMES; frame++) {
 		gz_camera_turn(&bench.scene.camera, deg);
 		keep_frame(&bench);
-		if (frame < BEFORE)
-			continue;
 		render_full(&bench);
+		const double kept = error(&bench.kept, &bench.full);
+		errors.kept += kept / FRAMES;
+		frame_by_itself(&bench, &bench.alone);
+		errors.worst = fmax(errors.worst, kept / error(&bench.alone, &bench.full));
 		small_scene_render(bench.renderer, &bench.scene, WIDTH, HEIGHT, &bench.alone, NULL);
-		*out_kept += error(&bench.kept, &bench.full) / (FRAMES - BEFORE);
-		*out_alone += error(&bench.alone, &bench.full) / (FRAMES - BEFORE);
+		errors.alone += error(&bench.alone, &bench.full) / FRAMES;
 	}
 	end(&bench);
+	return errors;
 }
 
-static void turning_camera_has_less_error_than_without(void **state)
+static void earlier_frames_never_hurt_while_the_camera_turns(void **state)
 {
 	(void)state;
-	/* By speed: the share of the error that may be left. */
+	/* By speed: the share of the mean error that may be left, and how many times as much error
+	 * as by itself a frame may have. At 5 degrees a frame, a quarter of a turn in .3 s, a frame
+	 * has what it is compared with by chance now and then. */
 	static const struct {
-		double deg, share;
-	} cases[] = { { 0.01, 0.8 }, { 0.1, 0.85 }, { 0.3, 1 }, { 1, 1.02 } };
-	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-		double kept, alone;
-		turn(cases[i].deg, &kept, &alone);
-		if (kept >= cases[i].share * alone)
-			fail_msg("%g degrees a frame: error %.4f with, %.4f without", cases[i].deg,
-				 kept, alone);
+		double deg, share, most;
+	} cases[] = {
+		{ 0.01, 0.95, 1.001 }, { 0.1, 0.95, 1.001 }, { 0.3, 0.95, 1.001 },
+		{ 1, 0.98, 1.01 },     { 5, 1.02, 1.1 },
+	};
+	for (int turned = 0; turned < TURNED_COUNT; turned++)
+		for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+			const struct turn_errors errors = turn(turned, cases[i].deg);
+			if (errors.kept >= cases[i].share * errors.alone ||
+			    errors.worst > cases[i].most)
+				fail_msg("scene %d, %g degrees a frame: error %.4f with, %.4f "
+					 "without, in one frame %.3f times as much",
+					 turned, cases[i].deg, errors.kept, errors.alone,
+					 errors.worst);
+		}
+}
+
+/* Without depths nobody knows where to look in earlier frames. */
+static void frames_stand_alone_without_depths_while_the_camera_turns(void **state)
+{
+	(void)state;
+	struct bench bench;
+	begin(&bench);
+	bench.flat = true;
+	for (int frame = 0; frame < 4; frame++) {
+		gz_camera_turn(&bench.scene.camera, 0.1);
+		keep_frame(&bench);
+		int x, y;
+		frame_by_itself(&bench, &bench.alone);
+		assert_int_equal(image_difference(&bench.kept, &bench.alone, &x, &y), 0);
 	}
+	end(&bench);
 }
 
 static void jump_of_the_camera_leaves_no_ghost(void **state)
@@ -281,7 +353,8 @@ TEST_SUITE(temporal)
 			still_picture_of_regions_converges_to_standard_beside_their_borders),
 		cmocka_unit_test(fovea_is_that_of_standard_in_every_frame),
 		cmocka_unit_test(any_change_drops_the_history),
-		cmocka_unit_test(turning_camera_has_less_error_than_without),
+		cmocka_unit_test(earlier_frames_never_hurt_while_the_camera_turns),
+		cmocka_unit_test(frames_stand_alone_without_depths_while_the_camera_turns),
 		cmocka_unit_test(jump_of_the_camera_leaves_no_ghost),
 		cmocka_unit_test(picture_too_large_to_be_shifted_is_refused),
 	};

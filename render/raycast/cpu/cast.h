@@ -76,6 +76,9 @@ struct gz_cast {
 	float step[GZ_PLAN_STEPS_MAX];          /**< world units */
 	float voxel_lengths[GZ_PLAN_STEPS_MAX]; /**< the steps in voxel lengths */
 	float end_transmittance; /**< a ray ends when less than this share of light comes through */
+	/** From world units along a ray to the share of the shot's depths, [0, 1]: only rich
+	 * kernels tell depths. A scale of 0: the fourth byte is 255. */
+	float depth_scale, depth_bias;
 	struct gz_cast_light light;
 	struct gz_seen_surroundings around; /**< world units */
 	const uint32_t *colours; /**< of voxels in memory, see gz_colour_pack(); NULL without */
@@ -121,7 +124,7 @@ typedef void gz_cast_arriving_function(const struct gz_cast *cast, enum gz_voxel
 /** What a kernel can do. The plain one stays free of what is seldom needed. */
 enum gz_cast_variant {
 	GZ_CAST_PLAIN,
-	GZ_CAST_RICH, /**< light, pre-integration */
+	GZ_CAST_RICH, /**< light, pre-integration, depths */
 	/** what GZ_CAST_RICH can, and colours of voxels; only for GZ_VOXEL_U8 */
 	GZ_CAST_COLOURED,
 	GZ_CAST_VARIANT_COUNT,

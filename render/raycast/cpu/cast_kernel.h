@@ -217,6 +217,20 @@ SIMD uint32_t cast_tile_by_segments(const struct march *m, struct light light[TI
 	return samples;
 }
 
+/* The pixels of rays that have gathered all light of the volume. */
+SIMD vi end_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile, int first,
+		 const struct rays *rays, int rich, struct light *light)
+{
+	const int deep = rich && cast->depth_scale > 0;
+	if (__builtin_expect(tile->hit_depth != NULL, 0)) {
+		if (deep)
+			gather_hit_depths(cast, tile, first, rays, light);
+		composite_hits(tile, first, light);
+	}
+	const vi pixels = to_pixel(cast, tile, first, light);
+	return deep ? with_depth(cast, tile->step, rays, light, pixels) : pixels;
+}
+
 SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_tile *tile,
 			     uint32_t out_pixels[GZ_TILE_RAYS], struct reading reading,
 			     enum gz_cast_variant variant)
@@ -236,7 +250,8 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 		near_nothing(&near);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		set_up_rays(cast, tile, part * SIMD_LANES, &rays[part]);
-		light[part] = (struct light) { vf_set(0), vf_set(0), vf_set(0), vf_set(1) };
+		light[part] =
+			(struct light) { vf_set(0), vf_set(0), vf_set(0), vf_set(1), vf_set(0) };
 		unlit[part].count = 0;
 		hit |= vm_any(rays[part].hit);
 		if (rich && cast->light.on && vm_any(rays[part].hit)) {
@@ -252,9 +267,8 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 		const int first = part * SIMD_LANES;
 		const struct march one = march_of_part(&march, part);
 		settle_unlit(&one, &light[part]);
-		if (__builtin_expect(tile->hit_depth != NULL, 0))
-			composite_hits(tile, first, &light[part]);
-		vi_store(out_pixels + first, to_pixel(cast, tile, first, &light[part]));
+		vi_store(out_pixels + first,
+			 end_rays(cast, tile, first, &rays[part], rich, &light[part]));
 	}
 	return samples;
 }

@@ -16,9 +16,10 @@
 #include "render/raycast/cpu/simd_surroundings.h"
 #include "render/raycast/shared/cast_constants.h"
 
-/* Colour gathered so far, front to back, and the share of light that still comes through. */
+/* Colour gathered so far, front to back, and the share of light that still comes through. The depth
+ * is k, weighted as the colour is. */
 struct light {
-	vf red, green, blue, through;
+	vf red, green, blue, through, depth;
 };
 
 /* A sample's colour: red and green up to 2047, blue up to 1023. */
@@ -67,6 +68,30 @@ SIMD void composite_hits(const struct gz_cast_tile *tile, int first, struct ligh
 		vf_from_i(vi_and(vi_shift_right(pixels, 16), byte)) * vf_set(1023.0F / 255),
 	};
 	composite_colour(colour, vf_set(1), met, light);
+}
+
+/* Add the depth of what composite_hits() adds: before it. */
+SIMD void gather_hit_depths(const struct gz_cast *cast, const struct gz_cast_tile *tile, int first,
+			    const struct rays *rays, struct light *light)
+{
+	const vf depth = vf_load(tile->hit_depth + first);
+	const vm met = vf_less(depth, vf_set(INFINITY));
+	const vf k =
+		vf_select(met, depth * vf_set(1 / cast->step[tile->step]) - rays->zero, vf_set(0));
+	light->depth = vf_fma(light->through, k, light->depth);
+}
+
+/* Put the mean depth of what the rays show into the fourth byte of their pixels. */
+SIMD vi with_depth(const struct gz_cast *cast, int step, const struct rays *rays,
+		   const struct light *light, vi pixels)
+{
+	const vf shown = vf_set(1) - light->through;
+	const vm any = vf_less(vf_set(1.0F / 255), shown);
+	const vf k = light->depth / vf_select(any, shown, vf_set(1));
+	const vf share = vf_fma((k + rays->zero) * vf_set(cast->step[step]),
+				vf_set(cast->depth_scale), vf_set(cast->depth_bias));
+	const vi byte = to_byte(vf_select(any, share, vf_set(0.5F)));
+	return vi_or(vi_and(pixels, vi_set(0x00FFFFFF)), vi_shift_left(byte, 24));
 }
 
 /* The world place of voxel coordinates along an axis. */
@@ -541,6 +566,7 @@ SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm ma
 			colour = own_colour(m->cast, m->reading.nearest, m->rays, k, visible);
 		if (m->rays->view) {
 			const vf weight = take_light(opacity, visible, light);
+			light->depth = vf_fma(weight, k, light->depth);
 			m->unlit->samples[m->unlit->count++] =
 				(struct unlit_sample) { k, visible, colour, weight };
 			if (m->unlit->count == LIT_AT_ONCE)
@@ -548,7 +574,10 @@ SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm ma
 			return;
 		}
 	}
+	const vf before = light->through;
 	composite_colour(colour, opacity, mask, light);
+	if (m->rich)
+		light->depth = vf_fma(before - light->through, k, light->depth);
 }
 
 /* Which rays have whole segments to come. */

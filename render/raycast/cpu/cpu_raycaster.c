@@ -562,6 +562,18 @@ static void surround_casts(const struct cpu_raycaster *cpu, const struct gz_ray_
 		job->casts[i].around = around;
 }
 
+/* Tell depths, if the shot wants them. */
+static void deepen_casts(const struct gz_shot *shot, struct cast_job *job)
+{
+	if (!shot->depths)
+		return;
+	const double length = shot->depths->farthest - shot->depths->nearest;
+	for (int i = 0; i < job->cast_count; i++) {
+		job->casts[i].depth_scale = (float)(1 / length);
+		job->casts[i].depth_bias = (float)(-shot->depths->nearest / length);
+	}
+}
+
 /* Make the grid of shadows, if the frame has them. */
 static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_shot *shot,
 				  const struct gz_ray_frame *ray_frame, struct cast_job *job)
@@ -624,8 +636,8 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	prepare_ms += gz_lighting_take_spent_ms(&cpu->lighting);
 	const int64_t start_ns = gz_clock_now_ns();
 	const bool nearest = gz_ray_samples_nearest(rays, cpu->volume);
-	const bool rich =
-		gz_ray_params_lit(rays) || rays->integration == GZ_INTEGRATION_PREINTEGRATED;
+	const bool rich = gz_ray_params_lit(rays) || shot->depths ||
+			  rays->integration == GZ_INTEGRATION_PREINTEGRATED;
 	const enum gz_cast_variant variant = cpu->volume->colours ? GZ_CAST_COLOURED
 					     : rich               ? GZ_CAST_RICH
 								  : GZ_CAST_PLAIN;
@@ -646,6 +658,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	if (result != GZ_OK)
 		return result;
 	surround_casts(cpu, rays, &job);
+	deepen_casts(shot, &job);
 	fill_tile_offsets(&job);
 	memset(cpu->counts, 0, sizeof cpu->counts);
 	cast_tiles(cpu, &job);

@@ -71,12 +71,13 @@ void gz_gl_cast_defines(struct gz_gl_cast_kind kind, const struct gz_gl_device *
 		[GZ_GL_TEXELS_SINGLE] = "#define SINGLE\n",
 		[GZ_GL_TEXELS_BRICKS] = "#define SINGLE\n#define BRICKS\n",
 	};
-	snprintf(out_defines, GZ_GL_CAST_DEFINES_SIZE, "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s%s%s",
-		 8 * gz_voxel_size(kind.type), texels[kind.texels],
-		 kind.nearest ? "#define NEAREST\n" : "", kind.segments ? "#define SEGMENTS\n" : "",
-		 kind.shaded ? "#define SHADED\n" : "", kind.shadowed ? "#define SHADOWED\n" : "",
-		 kind.fine ? "#define FINE_TABLE\n" : "", kind.coloured ? "#define COLOURED\n" : "",
-		 kind.hits ? "#define HITS\n" : "", gz_gl_device_defines(device));
+	snprintf(out_defines, GZ_GL_CAST_DEFINES_SIZE,
+		 "#define VOXEL_BITS %zu\n%s%s%s%s%s%s%s%s%s%s", 8 * gz_voxel_size(kind.type),
+		 texels[kind.texels], kind.nearest ? "#define NEAREST\n" : "",
+		 kind.segments ? "#define SEGMENTS\n" : "", kind.shaded ? "#define SHADED\n" : "",
+		 kind.shadowed ? "#define SHADOWED\n" : "", kind.fine ? "#define FINE_TABLE\n" : "",
+		 kind.coloured ? "#define COLOURED\n" : "", kind.hits ? "#define HITS\n" : "",
+		 kind.deep ? "#define DEEP\n" : "", gz_gl_device_defines(device));
 }
 
 struct gz_gl_shader gz_gl_cast_shader(struct gz_gl_cast_kind kind,
@@ -139,7 +140,7 @@ static enum gz_result use_cast_program(struct gz_gl_cast *cast, const struct gz_
 	const struct gz_gl_cast_kind kind = job->kind;
 	unsigned *program =
 		&cast->programs[kind.texels][kind.type][kind.nearest][kind.segments][kind.shaded]
-			       [kind.shadowed][kind.fine][kind.coloured][kind.hits];
+			       [kind.shadowed][kind.fine][kind.coloured][kind.hits][kind.deep];
 	if (!*program) {
 		char defines[GZ_GL_CAST_DEFINES_SIZE];
 		const struct gz_gl_shader shader = gz_gl_cast_shader(kind, job->device, defines);
@@ -179,7 +180,7 @@ uint64_t gz_gl_cast_samples(struct gz_gl_cast *cast, const struct gz_gl_device *
 
 void gz_gl_cast_free(struct gz_gl_cast *cast)
 {
-	const GLuint *programs = &cast->programs[0][0][0][0][0][0][0][0][0];
+	const GLuint *programs = &cast->programs[0][0][0][0][0][0][0][0][0][0];
 	for (size_t i = 0; i < sizeof cast->programs / sizeof(GLuint); i++)
 		if (programs[i])
 			glDeleteProgram(programs[i]);

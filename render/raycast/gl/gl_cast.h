@@ -80,6 +80,7 @@ struct gz_gl_cast_block {
 	float arriving_last[4];
 	uint32_t jitter[4];                /**< seed of gz_ray_jitter(); the plan's shift, px */
 	float steps[GZ_PLAN_STEPS_MAX][4]; /**< world units, voxel lengths, steps a phase */
+	float depths[4]; /**< scale and bias from world units to a share of the shot's depths */
 	uint32_t brick_table[4]; /**< number of the level's first brick; of bricks from one to the
 				    next along y, z */
 	float brick_last[4];     /**< greatest number of a brick along each axis */
@@ -98,12 +99,13 @@ struct gz_gl_cast_kind {
 	bool fine;     /**< the transfer table has more than GZ_TRANSFER_TABLE_SIZE entries */
 	bool coloured; /**< voxels have colours of their own */
 	bool hits;     /**< rays end at hits: gz_gl_cast_set_hits() */
+	bool deep;     /**< pixels have depths in their fourth byte */
 };
 
 /** Programs, made when first needed, and buffers. Zero-initialised has none. */
 struct gz_gl_cast {
 	/** OpenGL's names, by the members of struct gz_gl_cast_kind; 0 = not yet made. */
-	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2][2][2];
+	unsigned programs[GZ_GL_TEXELS_COUNT][GZ_VOXEL_TYPE_COUNT][2][2][2][2][2][2][2][2];
 	struct gz_gl_buffer blocks; /**< one for each level of detail */
 	struct gz_gl_buffer counts, staging;
 	struct gz_gl_buffer hits; /**< depth and pixel of each ray, by the place of its tile */

@@ -174,9 +174,9 @@ static enum gz_result prepare_frame(struct gl_raycaster *gl, const struct gz_gl_
 	return GZ_OK;
 }
 
-static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_params *rays,
-				  bool hits)
+static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_shot *shot, bool hits)
 {
+	const struct gz_ray_params *rays = shot->settings;
 	struct gz_gl_cast_job job = {
 		.device = &gl->device,
 		.gl_plan = &gl->plan,
@@ -187,7 +187,8 @@ static enum gz_result cast_levels(struct gl_raycaster *gl, const struct gz_ray_p
 			  .shadowed = rays->light.shadow_steps > 0,
 			  .fine = gl->scene.table->count > GZ_TRANSFER_TABLE_SIZE,
 			  .coloured = gl->scene.volume->colours != NULL,
-			  .hits = hits },
+			  .hits = hits,
+			  .deep = shot->depths != NULL },
 		.log = gl->base.log,
 	};
 	enum gz_result result = GZ_OK;
@@ -235,7 +236,7 @@ static enum gz_result cast_further_rounds(struct gl_raycaster *gl, const struct 
 		part = gz_gl_rounds_part(plan, tiles);
 		result = take_tiles(gl, &part);
 		if (result == GZ_OK)
-			result = cast_levels(gl, shot->settings, false);
+			result = cast_levels(gl, shot, false);
 		if (result != GZ_OK)
 			return result;
 	}
@@ -267,7 +268,7 @@ static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *
 		.gl_plan = &gl->plan,
 		.plan = plan,
 		.points = &gl->colours,
-		.kind = GZ_PLANE_COLOUR,
+		.kind = shot->depths ? GZ_PLANE_DEEP_COLOUR : GZ_PLANE_COLOUR,
 		.log = gl->base.log,
 	};
 	gz_gl_timer_mark(&gl->timer, &gl->device, MARK_START);
@@ -275,7 +276,7 @@ static enum gz_result draw_frame(struct gl_raycaster *gl, const struct gz_shot *
 	if (shot->hits)
 		result = gz_gl_cast_set_hits(&gl->cast, &gl->plan, plan, shot->hits);
 	if (result == GZ_OK)
-		result = cast_levels(gl, shot->settings, shot->hits != NULL);
+		result = cast_levels(gl, shot, shot->hits != NULL);
 	if (result == GZ_OK && shot->refined && plan->refines) {
 		result = cast_rounds(gl, shot, &shown);
 		job.plan = &shown;
@@ -327,6 +328,7 @@ static enum gz_result gl_draw(struct gz_raycaster *raycaster, const struct gz_sh
 		.world = &world,
 		.rays = rays,
 		.plan = plan,
+		.depths = shot->depths,
 		.shades = shot->shades,
 		.shade_count = shot->shade_count,
 		.wait = gl->wait_for_bricks,

@@ -488,6 +488,11 @@ void gz_gl_scene_fill(const struct gz_gl_scene *scene, int level, const struct g
 	block->transfer[1] = (float)(scene->table->bias / last);
 	block->transfer[2] = gz_ray_end_transmittance(rays);
 	block->transfer[3] = (float)last;
+	if (frame->depths) {
+		const double range = frame->depths->farthest - frame->depths->nearest;
+		block->depths[0] = (float)(1 / range);
+		block->depths[1] = (float)(-frame->depths->nearest / range);
+	}
 	for (int i = 0; i < plan->step_count; i++) {
 		const double length = plan->steps[i] / rays->ray_sampling_rate;
 		block->steps[i][0] = (float)(length * voxel_length);

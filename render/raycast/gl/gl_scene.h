@@ -84,7 +84,8 @@ struct gz_gl_frame {
 	double near; /**< depth at which they begin, in lengths of their directions */
 	const struct gz_ray_params *rays;
 	const struct gz_plan *plan;
-	const struct gz_shade *shades; /**< of others on the volume */
+	const struct gz_ray_depths *depths; /**< that pixels tell; NULL: none */
+	const struct gz_shade *shades;      /**< of others on the volume */
 	size_t shade_count;
 	bool wait; /**< wait until all bricks are there that have room */
 };

@@ -24,7 +24,7 @@ struct gz_row_filters gz_row_filters_of_plane(enum gz_plane_kind kind,
 	struct gz_row_filters filters = *colours;
 	const struct gz_plane_filters *found = find_plane_filters(colours->name);
 	const struct gz_row_filters *own = kind == GZ_PLANE_VALUE ? found->values : found->ids;
-	if (kind == GZ_PLANE_COLOUR)
+	if (kind == GZ_PLANE_COLOUR || kind == GZ_PLANE_DEEP_COLOUR)
 		return filters;
 	filters.double_cubic = own->double_cubic;
 	filters.double_mean = own->double_mean;

@@ -30,6 +30,7 @@ enum { TILES_A_GROUP = GZ_GL_GROUP_SIZE / (GZ_TILE_EDGE * GZ_TILE_EDGE) };
 
 static const char *const plane_defines[GZ_PLANE_KIND_COUNT] = {
 	[GZ_PLANE_COLOUR] = "",
+	[GZ_PLANE_DEEP_COLOUR] = "#define PLANE_DEEP\n",
 	[GZ_PLANE_VALUE] = "#define PLANE_VALUE\n",
 	[GZ_PLANE_ID] = "#define PLANE_ID\n",
 };

@@ -23,11 +23,13 @@ struct Ray {
 	float first, end;           // whole segments: from k = first to k = end
 	float head, head_at;        // length of the partial segment before them, and its middle
 	float rest;                 // length of the partial segment after them
+	float zero;                 // steps from the origin to k = 0
 };
 
 struct Light {
 	vec3 colour;
 	float through;
+	float depth; // k, weighted as the colour is
 };
 
 // Samples that are looked up before the first of them is composited, so that their fetches overlap. A lit or
@@ -107,7 +109,8 @@ Ray set_up_ray(uvec2 at, float step_length, float phase)
 	ray.head_at = fma(ray.head, 0.5, from);
 	// If everything lies within one segment, the head is all.
 	ray.rest = ray.end < ray.first ? 0.0 : to - ray.end;
-	ray.start = fma(vec3(box_at - shift), ray.delta, origin);
+	ray.zero = box_at - shift;
+	ray.start = fma(vec3(ray.zero), ray.delta, origin);
 	return ray;
 }
 
@@ -138,6 +141,9 @@ void composite(Ray ray, float k, uint packed_colour, float opacity, inout Light 
 #endif
 	float weight = light.through * opacity;
 	light.colour = fma(vec3(weight), colour, light.colour);
+#ifdef DEEP
+	light.depth = fma(weight, k, light.depth);
+#endif
 	light.through -= weight;
 }
 
@@ -268,6 +274,17 @@ uint to_pixel(Light light, uvec2 at)
 	return bytes.r | bytes.g << 8 | bytes.b << 16 | 0xFF000000U;
 }
 
+#ifdef DEEP
+// Puts the mean depth of what the ray shows into the fourth byte of its pixel.
+uint with_depth(Ray ray, Light light, float step_length, uint pixel)
+{
+	float shown = 1.0 - light.through;
+	float k = light.depth / max(shown, 1.0 / 255.0);
+	float share = shown > 1.0 / 255.0 ? fma((k + ray.zero) * step_length, depths.x, depths.y) : 0.5;
+	return (pixel & 0x00FFFFFFU) | uint(fma(clamp(share, 0.0, 1.0), 255.0, 0.5)) << 24;
+}
+#endif
+
 // Stores a pixel on its lattice and, in a pyramid, on the coarser lattices that have the point too.
 void store(Tile tile, uvec2 at, uint pixel)
 {
@@ -302,7 +319,7 @@ void main()
 #else
 	Ray ray = set_up_ray(at, step_lengths.x, phase);
 #endif
-	Light light = Light(vec3(0.0), 1.0);
+	Light light = Light(vec3(0.0), 1.0, 0.0);
 #ifdef SHADED
 	set_up_view(ray.delta, step_lengths.x);
 #endif
@@ -318,11 +335,18 @@ void main()
 #ifdef HITS
 	if (uintBitsToFloat(met.x) < FARTHEST_HIT) { // it is opaque
 		vec3 bytes = vec3(met.y & 255U, met.y >> 8 & 255U, met.y >> 16 & 255U);
+#ifdef DEEP
+		light.depth += light.through * (uintBitsToFloat(met.x) / step_lengths.x - ray.zero);
+#endif
 		light.colour += light.through * bytes * (vec3(2047.0, 2047.0, 1023.0) / 255.0);
 		light.through = 0.0;
 	}
 #endif
-	store(tile, at, to_pixel(light, at));
+	uint pixel = to_pixel(light, at);
+#ifdef DEEP
+	pixel = with_depth(ray, light, step_lengths.x, pixel);
+#endif
+	store(tile, at, pixel);
 	if (samples > 0U)
 		atomicAdd(counts[gl_WorkGroupID.x % uint(COUNT_SLOTS)], samples);
 }

@@ -17,6 +17,7 @@ layout(std140, binding = 1) uniform Cast
 	vec4 arriving_scale, arriving_bias, arriving_last;    // the same for the grid of shadows
 	uvec4 jitter; // seed, 0 = none; first pixel of the picture in the plan
 	vec4 steps[GZ_PLAN_STEPS_MAX];
+	vec4 depths; // scale and bias from world units along a ray to a share of the depths that are told
 	uvec4 brick_table; // number of the level's first brick; bricks from one to the next along y, z
 	vec4 brick_last;   // greatest number of a brick
 	vec4 brick_scales[BRICK_LEVELS]; // by level: its voxels per voxel of this level

@@ -1,5 +1,6 @@
 // The filters of the pyramid (docs/foveation.md). Colours are whole numbers and equal those of the cpu backend bit
-// for bit; they are opaque, so three channels are enough. Layer k of a pyramid has spacing 2^k.
+// for bit; they are opaque, so three channels are enough
+// where no depth is in the fourth. Layer k of a pyramid has spacing 2^k.
 layout(location = 2) uniform uint level;
 
 #if defined(PLANE_ID)
@@ -67,6 +68,19 @@ VALUES cubic(VALUES a, VALUES b, VALUES c, VALUES d)
 	return is_number(value) ? clamp(value, min(b, c), max(b, c)) : mean_of_2(b, c, 0);
 }
 #else
+#ifdef PLANE_DEEP
+#define VALUES ivec4
+
+VALUES unpacked_point(uint point)
+{
+	return ivec4(uvec4(point, point >> 8, point >> 16, point >> 24) & 255U);
+}
+
+uint packed_point(VALUES values)
+{
+	return uint(values.r) | uint(values.g) << 8 | uint(values.b) << 16 | uint(values.a) << 24;
+}
+#else
 #define VALUES ivec3
 
 VALUES unpacked_point(uint point)
@@ -78,6 +92,7 @@ uint packed_point(VALUES values)
 {
 	return uint(values.r) | uint(values.g) << 8 | uint(values.b) << 16 | 0xFF000000U;
 }
+#endif
 
 // Rounded up in odd rows and down in even ones.
 VALUES mean_of_2(VALUES a, VALUES b, int row)
