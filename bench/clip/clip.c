@@ -318,6 +318,19 @@ static void free_clip(struct clip *clip)
 	gz_study_free(&clip->study);
 }
 
+static void tell_outcome(const struct clip *clip, struct gz_clip_outcome *out_outcome)
+{
+	const size_t tests = clip->study.variant_count - 1;
+	*out_outcome = (struct gz_clip_outcome) {
+		.frames = clip->frames,
+		.tests = tests,
+		.px_per_deg = gz_display_px_per_deg(&clip->display),
+	};
+	if (tests > 0)
+		snprintf(out_outcome->first_test, sizeof out_outcome->first_test, "%s",
+			 clip->sequences[1].folder);
+}
+
 enum gz_result gz_clip_write(const struct gz_clip_request *request, const char *folder,
 			     const struct gz_log *log, struct gz_clip_outcome *out_outcome)
 {
@@ -335,8 +348,7 @@ enum gz_result gz_clip_write(const struct gz_clip_request *request, const char *
 	if (result == GZ_OK)
 		result = write_description(&clip);
 	if (result == GZ_OK)
-		*out_outcome =
-			(struct gz_clip_outcome) { clip.frames, clip.study.variant_count - 1 };
+		tell_outcome(&clip, out_outcome);
 	else if (result == GZ_ERR_NO_MEM)
 		gz_err(log, "no memory for a clip of %d frames", clip.frames);
 	free_clip(&clip);

@@ -30,7 +30,9 @@ struct gz_clip_request {
 /** What was written. */
 struct gz_clip_outcome {
 	int frames;
-	size_t tests; /**< sequences beside the reference */
+	size_t tests;                        /**< sequences beside the reference */
+	char first_test[GZ_STUDY_TEXT_SIZE]; /**< folder of the first of them, in the clip's */
+	double px_per_deg;                   /**< in the middle of the display */
 };
 
 /**

@@ -139,6 +139,22 @@ static struct gz_clip_request clip_request(const struct settings *settings,
 	};
 }
 
+/* How published metrics judge the clip. ColorVideoVDP has no place for the gaze. */
+static void print_commands(const struct settings *settings, const struct gz_clip_outcome *outcome)
+{
+	const char *out = settings->out;
+	printf("%s: %d frames of a reference and %zu more; judge them by FovVideoVDP with\n"
+	       "/usr/bin/python3 bench/peers/fovvideovdp.py --metric FovVideoVDP %s\n",
+	       out, outcome->frames, outcome->tests, out);
+	if (outcome->tests == 0)
+		return;
+	printf("or by ColorVideoVDP, which sees colours but takes the eye for looking everywhere, "
+	       "with\n"
+	       "cvvdp --test '%s/%s/frame-%%04d.png' --ref '%s/reference/frame-%%04d.png' "
+	       "--display standard_fhd --pix-per-deg %.1f --fps %g\n",
+	       out, outcome->first_test, out, outcome->px_per_deg, settings->fps);
+}
+
 static int run_clip(int argc, char *const *argv, const struct gz_log *log)
 {
 	static struct settings settings; /* of some size; a program runs one command */
@@ -168,9 +184,7 @@ static int run_clip(int argc, char *const *argv, const struct gz_log *log)
 		gz_err(log, "interrupted: the clip is not complete");
 	if (result != GZ_OK)
 		return GAZEBENCH_FAILED;
-	printf("%s: %d frames of a reference and %zu more; judge them by FovVideoVDP with\n"
-	       "/usr/bin/python3 bench/peers/fovvideovdp.py --metric FovVideoVDP %s\n",
-	       settings.out, outcome.frames, outcome.tests, settings.out);
+	print_commands(&settings, &outcome);
 	return GAZEBENCH_DONE;
 }
 
@@ -180,13 +194,14 @@ const struct gz_command gazebench_clip = {
 	.operands = "SCENE",
 	.operands_max = 1,
 	.summary = "write sequences of pictures for metrics of moving pictures",
-	.details =
-		"Writes what someone sees while the camera moves: PNG pictures of each frame by "
-		"standard, the\n"
-		"reference, and by each method, and clip.json with the gaze, the camera and the "
-		"display. Prints the\n"
-		"command that judges them by FovVideoVDP (Mantiuk et al. 2021), which its authors "
-		"publish.\n",
+	.details = "Writes what someone sees while the camera moves: PNG pictures of each frame by "
+		   "standard, the\n"
+		   "reference, and by each method, and clip.json with the gaze, the camera and the "
+		   "display. Prints the\n"
+		   "commands that judge them by FovVideoVDP (Mantiuk et al. 2021) and by "
+		   "ColorVideoVDP "
+		   "(Mantiuk et al.\n"
+		   "2024), which their authors publish; the latter knows no gaze.\n",
 	.options = options,
 	.option_count = sizeof options / sizeof options[0],
 	.run = run_clip,

@@ -14,11 +14,19 @@
 
 struct settings {
 	struct gz_command_common common;
+	char jod[GZ_PATH_SIZE];
 	bool json;
 };
 
 static const struct gz_option options[] = {
 	GZ_COMMAND_HELP_OPTION,
+	{ .key = "jod",
+	  .type = GZ_OPTION_STRING,
+	  .offset = offsetof(struct settings, jod),
+	  .max = GZ_PATH_SIZE,
+	  .preset = "",
+	  .help = "table of qualities that a published metric has found, entered by hand, to chart "
+		  "over time: scene,method,jod,how" },
 	{ .key = "json",
 	  .type = GZ_OPTION_BOOL,
 	  .offset = offsetof(struct settings, json),
@@ -55,10 +63,11 @@ static enum gz_result print_summary_json(const struct gz_summary *summary)
 	return printed ? GZ_OK : GZ_ERR_IO;
 }
 
-static enum gz_result report_study(const struct gz_study *study, const char *folder, bool json,
-				   const struct gz_log *log)
+static enum gz_result report_study(const struct gz_study *study, const char *folder,
+				   const struct settings *settings, const struct gz_log *log)
 {
 	struct gz_summary summary;
+	struct gz_jod_table jods = { 0 };
 	enum gz_result result = gz_summary_make(study, &summary);
 	if (result == GZ_ERR_END) {
 		gz_err(log, "%s: no frame was measured yet; gazebench run resumes it", folder);
@@ -68,22 +77,29 @@ static enum gz_result report_study(const struct gz_study *study, const char *fol
 		gz_err(log, "%s: cannot be summed up: %s", folder, gz_result_text(result));
 		return result;
 	}
+	if (settings->jod[0]) {
+		result = gz_jod_table_read(settings->jod, study, log, &jods);
+		summary.jods = &jods;
+	}
 	if (!study->complete)
 		gz_warn(log, "%s: a partial study: %zu frames so far; the report says so", folder,
 			study->row_count);
 	else if (study->shard_count > 1)
 		gz_warn(log, "%s: shard %d of %d alone; the report says so", folder,
 			study->shard + 1, study->shard_count);
-	result = gz_report_write(&summary, folder, log);
 	if (result == GZ_OK)
-		result = json ? print_summary_json(&summary) : print_answers(&summary, folder);
+		result = gz_report_write(&summary, folder, log);
+	if (result == GZ_OK)
+		result = settings->json ? print_summary_json(&summary)
+					: print_answers(&summary, folder);
 	gz_summary_free(&summary);
+	gz_jod_table_free(&jods);
 	return result;
 }
 
 static int run_report(int argc, char *const *argv, const struct gz_log *log)
 {
-	struct settings settings;
+	static struct settings settings; /* of some size; a program runs one command */
 	struct gz_operands operands;
 	struct gz_study study;
 	int status =
@@ -97,7 +113,7 @@ static int run_report(int argc, char *const *argv, const struct gz_log *log)
 	const char *folder = operands.items[0];
 	if (gz_study_read(folder, log, &study) != GZ_OK)
 		return GAZEBENCH_FAILED;
-	const enum gz_result result = report_study(&study, folder, settings.json, log);
+	const enum gz_result result = report_study(&study, folder, &settings, log);
 	gz_study_free(&study);
 	return result == GZ_OK ? GAZEBENCH_DONE : GAZEBENCH_FAILED;
 }

@@ -14,6 +14,7 @@ three of four people prefer the better one. Beside it stands the median time of 
 half a minute on two idle cores, and 4 GiB of memory for 4K.
 """
 import argparse
+import csv
 import importlib
 import json
 import os
@@ -28,6 +29,8 @@ def read_arguments():
     parser.add_argument("--photometry", default="standard_fhd",
                         help="brightness of the display: a name of the metric's display_models.json")
     parser.add_argument("--frames", type=int, default=0, help="judge the first so many frames alone")
+    parser.add_argument("--table", metavar="FILE",
+                        help="write a table for gazebench report --jod: scene,method,jod,how")
     parser.add_argument("--json", action="store_true", help="a list of rows: scene size frames fps variant jod frame_ms")
     return parser.parse_args()
 
@@ -103,6 +106,16 @@ def judge_clip(arguments, folder):
                "reference_ms": clip["reference"]["frame_ms"]}
 
 
+def write_table(path, rows):
+    with open(path, "w", newline="", encoding="utf-8") as out:
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(["scene", "method", "jod", "how"])
+        for row in rows:
+            how = (f"FovVideoVDP, {row['frames']} frames of {row['size'][0]}x{row['size'][1]} at {row['fps']:g} a second "
+                   f"against {row['reference']}")
+            writer.writerow([row["scene"], row["variant"], f"{row['jod']:.3f}", how])
+
+
 def main():
     arguments = read_arguments()
     rows = []
@@ -112,6 +125,8 @@ def main():
             if not arguments.json:
                 print("{scene} {size[0]}x{size[1]}, {frames} frames, {variant}: JOD {jod:.3f} against {reference}, "
                       "{frame_ms:.1f} ms a frame ({reference_ms:.1f} ms)".format(**row), flush=True)
+    if arguments.table:
+        write_table(arguments.table, rows)
     if arguments.json:
         json.dump(rows, sys.stdout, indent=1)
         print()

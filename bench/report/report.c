@@ -53,6 +53,23 @@ static json_t *make_pareto(const struct gz_summary *summary, const struct gz_gro
 	return gz_page_figure(charts, name, class_name, caption);
 }
 
+/* The chart of JOD that somebody has entered; NULL without. */
+static json_t *make_jod(const struct gz_summary *summary, const struct gz_group *group,
+			const struct gz_charts *charts)
+{
+	char name[GZ_NAMES_SIZE], source[GZ_NAMES_SIZE], caption[4 * GZ_NAMES_SIZE];
+	gz_jod_source(summary, group, source);
+	if (!source[0])
+		return NULL;
+	gz_jod_chart_name(summary, group, name);
+	snprintf(caption, sizeof caption,
+		 "Quality in JOD over the time of a frame: 10 is no visible difference, and of two "
+		 "that are 1 apart three of four people prefer the better one. The values were not "
+		 "measured by this study: they were entered from %.200s (%.200s).",
+		 source, summary->jods->path);
+	return gz_page_figure(charts, name, "wide", caption);
+}
+
 static json_t *make_boxes(const struct gz_summary *summary, const struct gz_group *group,
 			  const struct gz_charts *charts, const char *class_name)
 {
@@ -441,6 +458,9 @@ static void add_group(const struct gz_summary *summary, size_t place,
 		add_errors(summary, group, charts, measure, out);
 	if (charts->available)
 		json_object_set_new(out, "maps", make_maps(summary, group, charts));
+	json_t *jod = make_jod(summary, group, charts);
+	if (jod)
+		json_object_set_new(out, "jod_chart", jod);
 	add_crop_figures(summary, place, crops, out);
 }
 

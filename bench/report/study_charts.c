@@ -106,6 +106,88 @@ static enum gz_result draw_pareto(const struct gz_summary *summary, const struct
 	return result;
 }
 
+/* ---- entered JOD ---- */
+
+void gz_jod_chart_name(const struct gz_summary *summary, const struct gz_group *group,
+		       char out_name[256])
+{
+	gz_chart_name(summary, "pareto-jod", group, out_name);
+}
+
+void gz_jod_source(const struct gz_summary *summary, const struct gz_group *group,
+		   char out_text[256])
+{
+	const struct gz_jod_value *first = NULL;
+	bool others = false;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const struct gz_jod_value *value = gz_summary_jod(summary, group, i);
+		others = others || (first && value && strcmp(first->how, value->how) != 0);
+		first = first ? first : value;
+	}
+	snprintf(out_text, 256, "%.230s%s", first ? first->how : "", others ? " and others" : "");
+}
+
+/* Whether no other series with a value is as fast and as good, and better in one. */
+static bool on_jod_front(const struct gz_summary *summary, const struct gz_group *group,
+			 size_t series)
+{
+	const double ms = group->series[series].typical_ms;
+	const double jod = gz_summary_jod(summary, group, series)->jod;
+	for (size_t i = 0; i < group->series_count; i++) {
+		const struct gz_jod_value *other = gz_summary_jod(summary, group, i);
+		const double other_ms = group->series[i].typical_ms;
+		if (other && other_ms <= ms && other->jod >= jod &&
+		    (other_ms < ms || other->jod > jod))
+			return false;
+	}
+	return true;
+}
+
+static bool add_jod_curve(const struct gz_summary *summary, const struct gz_group *group,
+			  const struct gz_curve *curve, struct gz_plot_curve *out)
+{
+	char text[GZ_NAMES_SIZE];
+	const struct gz_method_look look = gz_method_look(curve->method);
+	if (!gz_plot_curve_start(out, curve->count))
+		return false;
+	gz_curve_name(summary->study, group, curve, text);
+	snprintf(out->name, sizeof out->name, "%.*s", GZ_PLOT_LABEL_SIZE - 1, text);
+	out->colour = look.colour;
+	out->point_type = look.point;
+	for (size_t i = 0; i < curve->count; i++) {
+		const struct gz_jod_value *value = gz_summary_jod(summary, group, curve->series[i]);
+		struct gz_plot_point *point = &out->points[i];
+		point->x = group->series[curve->series[i]].typical_ms;
+		point->y = value ? value->jod : NAN;
+		point->marked = value && on_jod_front(summary, group, curve->series[i]);
+		gz_variant_label(summary->study, group, curve, curve->series[i], text);
+		snprintf(point->label, sizeof point->label, "%.*s", GZ_PLOT_LABEL_SIZE - 1, text);
+	}
+	return true;
+}
+
+static enum gz_result draw_jod(const struct gz_summary *summary, const struct gz_group *group,
+			       struct gz_charts *charts)
+{
+	char name[GZ_NAMES_SIZE], source[GZ_NAMES_SIZE];
+	struct gz_plot plot = { .x = { .title = "time of a frame, ms", .logarithmic = true },
+				.y = { .falls = true },
+				.join_marked = true };
+	gz_jod_source(summary, group, source);
+	if (!source[0])
+		return GZ_OK;
+	snprintf(plot.title, sizeof plot.title, "JOD (10 = same), entered from: %.150s", source);
+	bool sound = gz_plot_start(&plot, group->curve_count);
+	for (size_t i = 0; i < group->curve_count && sound; i++)
+		sound = add_jod_curve(summary, group, &group->curves[i], &plot.curves[i]);
+	gz_jod_chart_name(summary, group, name);
+	const enum gz_result result = sound ? gz_plot_draw(charts, name, &plot) : GZ_ERR_NO_MEM;
+	gz_plot_free(&plot);
+	return result;
+}
+
+/* ---- growth ---- */
+
 /* Whether two fits are shown in one chart: they differ in the variant only. */
 static bool share_chart(const struct gz_scaling *a, const struct gz_scaling *b)
 {
@@ -271,6 +353,8 @@ static enum gz_result draw_group(const struct gz_summary *summary, const struct 
 	enum gz_result result = GZ_OK;
 	for (int measure = 0; measure < GZ_ERROR_MEASURES && result == GZ_OK; measure++)
 		result = draw_pareto(summary, group, measure, charts);
+	if (result == GZ_OK)
+		result = draw_jod(summary, group, charts);
 	if (result == GZ_OK)
 		result = draw_boxes(summary, group, charts);
 	if (result == GZ_OK)

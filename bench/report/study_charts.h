@@ -21,6 +21,15 @@ enum gz_result gz_study_charts_draw(const struct gz_summary *summary, struct gz_
 void gz_pareto_chart_name(const struct gz_summary *summary, const struct gz_group *group,
 			  enum gz_error_measure measure, char out_name[256]);
 
+/** Name of the chart of entered JOD over time. */
+void gz_jod_chart_name(const struct gz_summary *summary, const struct gz_group *group,
+		       char out_name[256]);
+
+/** How the entered JOD of a group were measured: of the first value, and that there are others.
+ *  Empty if there is no value. */
+void gz_jod_source(const struct gz_summary *summary, const struct gz_group *group,
+		   char out_text[256]);
+
 /** Name of the map of time (@p of_error false) or error over the gaze, of one series. */
 void gz_map_chart_name(const struct gz_summary *summary, const struct gz_group *group,
 		       size_t series, bool of_error, char out_name[256]);

@@ -719,6 +719,14 @@ static void free_group(struct gz_group *group)
 	free(group->curves);
 }
 
+const struct gz_jod_value *gz_summary_jod(const struct gz_summary *summary,
+					  const struct gz_group *group, size_t series)
+{
+	const struct gz_study *study = summary->study;
+	return gz_jod_table_find(summary->jods, study->scenes[group->scene].name,
+				 study->variants[group->series[series].variant].text);
+}
+
 void gz_summary_free(struct gz_summary *summary)
 {
 	for (size_t i = 0; i < summary->group_count; i++)

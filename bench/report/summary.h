@@ -11,6 +11,7 @@
 #define GZ_BENCH_REPORT_SUMMARY_H
 
 #include "base/result.h"
+#include "bench/report/jod_table.h"
 #include "bench/report/measures.h"
 #include "bench/report/trust.h"
 #include "bench/study/columns.h"
@@ -123,6 +124,7 @@ struct gz_summary {
 	size_t group_count;
 	struct gz_scaling *scalings;
 	size_t scaling_count;
+	const struct gz_jod_table *jods; /**< entered values; borrowed; NULL: none */
 };
 
 /**
@@ -134,6 +136,10 @@ struct gz_summary {
  * @retval GZ_ERR_NO_MEM
  */
 enum gz_result gz_summary_make(const struct gz_study *study, struct gz_summary *out_summary);
+
+/** The entered JOD of a series; NULL if nobody has entered one. */
+const struct gz_jod_value *gz_summary_jod(const struct gz_summary *summary,
+					  const struct gz_group *group, size_t series);
 
 /** Free what it holds and zero it. */
 void gz_summary_free(struct gz_summary *summary);

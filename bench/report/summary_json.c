@@ -244,12 +244,30 @@ static json_t *head_to_json(const struct gz_study *study)
 	return object;
 }
 
+/* Put entered JOD beside what was measured. */
+static void add_jods(const struct gz_summary *summary, const struct gz_group *group, json_t *object)
+{
+	json_t *variants = json_object_get(object, "variants");
+	for (size_t i = 0; summary->jods && i < group->series_count; i++) {
+		const struct gz_jod_value *value = gz_summary_jod(summary, group, i);
+		json_t *variant = json_array_get(variants, i);
+		json_object_set_new(variant, "jod", value ? json_real(value->jod) : json_null());
+		json_object_set_new(variant, "jod_how",
+				    value ? json_string(value->how) : json_null());
+	}
+}
+
 json_t *gz_summary_to_json(const struct gz_summary *summary)
 {
 	json_t *object = head_to_json(summary->study);
 	json_t *groups = json_array(), *scalings = json_array();
-	for (size_t i = 0; i < summary->group_count; i++)
-		json_array_append_new(groups, group_to_json(summary->study, &summary->groups[i]));
+	for (size_t i = 0; i < summary->group_count; i++) {
+		json_t *group = group_to_json(summary->study, &summary->groups[i]);
+		add_jods(summary, &summary->groups[i], group);
+		json_array_append_new(groups, group);
+	}
+	if (summary->jods)
+		json_object_set_new(object, "jods", json_string(summary->jods->path));
 	for (size_t i = 0; i < summary->scaling_count; i++)
 		json_array_append_new(scalings,
 				      scaling_to_json(summary->study, &summary->scalings[i]));

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "bench/study/csv.h"
 
 /* The first fields identify the row; the columns of the table follow. */
 #define PLACE_NAMES "scene,transfer,width,height,backend,variant,point,camera,frame,gaze_x,gaze_y"
@@ -182,34 +183,9 @@ void gz_study_rows_print(const struct gz_study *study, const struct gz_study_row
 	fputc('\n', file);
 }
 
-/* Cut the next field off *line, which is moved behind its comma, or set to NULL behind the last
- * field. NULL where there is none, or its quotes do not end. */
-static char *next_csv_field(char **line)
-{
-	char *field = *line, *to;
-	if (!field)
-		return NULL;
-	if (*field != '"') {
-		*line = strchr(field, ',');
-		if (*line)
-			*(*line)++ = '\0';
-		return field;
-	}
-	const char *from = field + 1;
-	for (to = field; *from && (*from != '"' || from[1] == '"'); from++) {
-		from += *from == '"';
-		*to++ = *from;
-	}
-	if (*from != '"' || (from[1] != ',' && from[1] != '\0'))
-		return NULL;
-	*line = from[1] == ',' ? field + (from + 2 - field) : NULL;
-	*to = '\0';
-	return field;
-}
-
 static bool text_is(char **line, const char *name, const char *expected, char *what, size_t size)
 {
-	const char *field = next_csv_field(line);
+	const char *field = gz_csv_next_field(line);
 	if (field && strcmp(field, expected) == 0)
 		return true;
 	snprintf(what, size, "%s is '%s' where '%s' follows", name, field ? field : "", expected);
@@ -225,7 +201,7 @@ static bool whole_is(char **line, const char *name, long long expected, char *wh
 
 static bool gaze_is(char **line, const char *name, float expected, char *what, size_t size)
 {
-	const char *field = next_csv_field(line);
+	const char *field = gz_csv_next_field(line);
 	double value;
 	if (field && gz_number_parse(field, &value) && (float)value == expected)
 		return true;
@@ -290,7 +266,7 @@ bool gz_study_rows_parse(const struct gz_study *study, const struct gz_study_lay
 		return false;
 	for (size_t i = 0; i < layout->count; i++) {
 		const struct gz_study_column *column = &gz_study_columns[layout->columns[i]];
-		const char *field = next_csv_field(&line);
+		const char *field = gz_csv_next_field(&line);
 		if (field && parse_number(field, column, row))
 			continue;
 		snprintf(what, what_size, "%s is '%s', which is no such number", column->name,

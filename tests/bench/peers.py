@@ -11,7 +11,7 @@ import unittest
 
 sys.path[:0] = sys.argv[3:5]
 from bauer2018 import camera_lines
-from fovvideovdp import Judge, picture_paths, read_clip
+from fovvideovdp import Judge, picture_paths, read_clip, write_table
 from gazeview_frames import GAZES, Series, run_gazeview
 from picture import read_png, write_scene
 
@@ -57,6 +57,16 @@ class Peers(unittest.TestCase):
         self.assertEqual(numbers["look_at"], [0, 0.25, 0])
         self.assertEqual(numbers["up"], [0, 1, 0])
         self.assertAlmostEqual(numbers["fov_deg"][0], 59.979351, places=5)
+
+    def test_table_has_what_gazebench_reads_of_a_metric(self):
+        row = {"scene": "head", "variant": "mdc:blend_px=2", "jod": 9.8765, "frames": 24, "size": [40, 30], "fps": 60,
+               "reference": "standard"}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "jod.csv")
+            write_table(path, [row])
+            with open(path, encoding="utf-8") as file:
+                self.assertEqual(file.read(), "scene,method,jod,how\nhead,mdc:blend_px=2,9.877,"
+                                 '"FovVideoVDP, 24 frames of 40x30 at 60 a second against standard"\n')
 
     def test_clip_is_read_as_the_metric_needs_it(self):
         clip = {"format": "gazecast clip", "version": 1, "frames": 2, "pictures": "frame-%04d.png", "size": [40, 30],

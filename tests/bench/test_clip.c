@@ -166,6 +166,10 @@ static void every_sequence_shows_the_same_cameras(void **state)
 			  "clip", "a.scene", "--out=c", "--size=48x32", "--frames=2", "--turn=5",
 			  "--methods=uniform:uniform_spacing=1,mdc:mdc_square_px=8", NULL });
 	assert_said(place, 0, "--metric FovVideoVDP c\n");
+	assert_said(place, 0,
+		    "cvvdp --test 'c/1-uniform-uniform_spacing-1/frame-%04d.png' --ref "
+		    "'c/reference/frame-%04d.png' --display standard_fhd --pix-per-deg ");
+	assert_said(place, 0, " --fps 60\n");
 	assert_true(same_pictures(place, "c/reference/frame-0000.png",
 				  "c/1-uniform-uniform_spacing-1/frame-0000.png"));
 	assert_true(same_pictures(place, "c/reference/frame-0001.png",

@@ -5,7 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/captured_log.h"
 #include "bench/report/advice.h"
 #include "bench/report/charts.h"
 #include "bench/report/names.h"
@@ -278,6 +280,92 @@ static void page_shows_the_command_that_makes_the_study(void **state)
 	free_both(&study, &summary);
 }
 
+/* ---- entered JOD ---- */
+
+/* Its scene is head, its variants those of make(). */
+static enum gz_result read_jods(const char *text, const struct gz_study *study,
+				const struct gz_log *log, struct gz_jod_table *out_table)
+{
+	char path[] = "/tmp/gz_jod_XXXXXX";
+	const int file = mkstemp(path);
+	assert_true(file >= 0);
+	assert_int_equal(write(file, text, strlen(text)), (ssize_t)strlen(text));
+	close(file);
+	const enum gz_result result = gz_jod_table_read(path, study, log, out_table);
+	unlink(path);
+	return result;
+}
+
+static void entered_jod_stand_beside_what_was_measured_and_say_so(void **state)
+{
+	(void)state;
+	struct gz_study study;
+	struct gz_summary summary;
+	struct gz_jod_table jods = { 0 };
+	struct gz_text page = { 0 };
+	struct captured_log captured;
+	const struct gz_charts none = { 0 };
+	captured_log_init(&captured, "*:warn");
+	make(NULL, 1, &study, &summary);
+	gz_page_write(&summary, &none, NULL, &page);
+	assert_null(strstr(page.bytes, "JOD"));
+	gz_text_free(&page);
+	assert_int_equal(read_jods("scene,method,jod,how\n"
+				   "# of a clip\n"
+				   "head,acuity,9.64,\"a metric, 24 frames\"\r\n"
+				   "\n"
+				   "head,ddc,9.5,a metric\n"
+				   "head,mdc:blend_px=16:levels=yes,-0.5,another metric\n",
+				   &study, &captured.log, &jods),
+			 GZ_OK);
+	assert_non_null(strstr(captured.last, ":5: the study has no method ddc"));
+	summary.jods = &jods;
+	const struct gz_group *group = &summary.groups[0];
+	assert_true(gz_summary_jod(&summary, group, 1)->jod == 9.64);
+	assert_true(gz_summary_jod(&summary, group, 4)->jod == -0.5);
+	assert_null(gz_summary_jod(&summary, group, 0));
+	char source[256];
+	gz_jod_source(&summary, group, source);
+	assert_string_equal(source, "a metric, 24 frames and others");
+	gz_page_write(&summary, &none, NULL, &page);
+	assert_non_null(strstr(page.bytes, "JOD, entered</th>"));
+	assert_non_null(strstr(page.bytes, "<td>9.64</td></tr>"));
+	gz_text_free(&page);
+	gz_jod_table_free(&jods);
+	free_both(&study, &summary);
+}
+
+static void table_of_jod_that_is_none_is_refused_with_its_line(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text, *message;
+	} wrong[] = {
+		{ "", ":1: the first line must be" },
+		{ "scene,jod\n", ":1: the first line must be" },
+		{ "scene,method,jod,how\nhead,acuity,ten,x\n", ":2: no value" },
+		{ "scene,method,jod,how\nhead,acuity,10.5,x\n", ":2: no value" },
+		{ "scene,method,jod,how\nhead,acuity,nan,x\n", ":2: no value" },
+		{ "scene,method,jod,how\nhead,acuity,9\n", ":2: say in the fourth column" },
+		{ "scene,method,jod,how\nhead,acuity,9,\n", ":2: say in the fourth column" },
+		{ "scene,method,jod,how\nhead,acuity,9,x,y\n", ":2: say in the fourth column" },
+		{ "scene,method,jod,how\nhead,acuity,9,x\nhead,acuity,8,x\n",
+		  ":3: an earlier line" },
+	};
+	struct gz_study study;
+	struct gz_summary summary;
+	struct captured_log captured;
+	make(NULL, 1, &study, &summary);
+	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+		struct gz_jod_table jods = { 0 };
+		captured_log_init(&captured, "*:warn");
+		if (read_jods(wrong[i].text, &study, &captured.log, &jods) != GZ_ERR_FORMAT ||
+		    !strstr(captured.last, wrong[i].message) || jods.values)
+			fail_msg("'%s' gives '%s'", wrong[i].text, captured.last);
+	}
+	free_both(&study, &summary);
+}
+
 /* A scene on the disk, and a study that has seen it. */
 struct seen_scene {
 	char folder[64];
@@ -496,6 +584,8 @@ TEST_SUITE(report)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(variants_have_readable_names),
 		cmocka_unit_test(longest_variant_is_cut_and_not_overrun),
+		cmocka_unit_test(entered_jod_stand_beside_what_was_measured_and_say_so),
+		cmocka_unit_test(table_of_jod_that_is_none_is_refused_with_its_line),
 		cmocka_unit_test(files_of_several_groups_have_their_names_and_no_slash),
 		cmocka_unit_test(answer_names_the_cheapest_within_the_bound_and_what_it_saves),
 		cmocka_unit_test(without_a_variant_within_the_bound_standard_remains),
