@@ -205,6 +205,7 @@ static enum gz_result make_frame(struct gz_picture_maker *maker,
 		.foveation = shot->foveation,
 		.display = &shot->view->display,
 		.focus = shot->focus,
+		.temporal = shot->temporal,
 		.width = shot->view->width,
 		.height = shot->view->height,
 		.plan = plan,
@@ -232,7 +233,7 @@ enum gz_result gz_stability_frame_at(struct gz_stability_bench *bench,
 				     const struct gz_stability_view *view, struct gz_point gaze,
 				     struct gz_image *image)
 {
-	const struct gz_stability_shot shot = { foveation, view, gz_focus_at(gaze) };
+	const struct gz_stability_shot shot = { foveation, view, gz_focus_at(gaze), NULL };
 	return gz_stability_frame(bench, scene, &shot, image);
 }
 
@@ -256,7 +257,7 @@ static enum gz_result render_portable(struct gz_stability_bench *bench,
 		.backend_params = { .threads = bench->settings.threads, .simd = "portable" },
 	};
 	const struct gz_foveation standard = gz_foveation_full();
-	const struct gz_stability_shot shot = { &standard, view, gz_focus_at(centre) };
+	const struct gz_stability_shot shot = { &standard, view, gz_focus_at(centre), NULL };
 	enum gz_result result = GZ_OK;
 	if (!bench->portable.maker)
 		result = gz_picture_maker_create(&params, bench->settings.log,

@@ -68,6 +68,7 @@ struct gz_stability_shot {
 	const struct gz_foveation *foveation;
 	const struct gz_stability_view *view;
 	struct gz_focus focus;
+	const struct gz_temporal_params *temporal; /**< NULL: no earlier frame is kept */
 };
 
 /** The bench. Rows read settings, backend and foveation; the rest is for the functions below. */
@@ -184,6 +185,8 @@ enum gz_result gz_stability_camera(struct gz_stability_bench *, struct gz_stabil
 enum gz_result gz_stability_transfer(struct gz_stability_bench *, struct gz_stability_outcome *);
 enum gz_result gz_stability_spike(struct gz_stability_bench *, struct gz_stability_outcome *);
 enum gz_result gz_stability_sizes(struct gz_stability_bench *, struct gz_stability_outcome *);
+enum gz_result gz_stability_turn(struct gz_stability_bench *, struct gz_stability_outcome *);
+enum gz_result gz_stability_kept(struct gz_stability_bench *, struct gz_stability_outcome *);
 enum gz_result gz_stability_churn(struct gz_stability_bench *, struct gz_stability_outcome *);
 
 #endif

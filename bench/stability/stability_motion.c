@@ -205,7 +205,7 @@ static enum gz_result check_landing(struct gz_stability_bench *bench, struct lan
 	const struct gz_stability_view view = gz_stability_scene_view(bench);
 	const struct gz_focus focus = landing_focus(&view.display, landing->ends, before_ns);
 	const struct gz_stability_scene *scene = &bench->settings.scene;
-	const struct gz_stability_shot shot = { &landing->foveation, &view, focus };
+	const struct gz_stability_shot shot = { &landing->foveation, &view, focus, NULL };
 	const enum gz_result result = gz_stability_frame(bench, scene, &shot, &landing->image);
 	if (result != GZ_OK)
 		return result;
