@@ -51,6 +51,9 @@ enum {
  * method. */
 #define BETWEEN_ERROR2 (1.0F / 8)
 
+/* Shares of the history below this change no pixel. */
+#define LEAST_WEIGHT (0.5F / 255)
+
 /* R, G, B and a depth. */
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t int4 __attribute__((vector_size(16)));
@@ -68,7 +71,8 @@ struct join {
 	struct gz_temporal *temporal;
 	const struct gz_plan *plan;
 	float weight;
-	bool moves; /* the camera does */
+	bool moves;          /* the camera does */
+	bool knows_movement; /* and the history may be asked */
 	struct movement movement;
 	uint32_t *out;
 };
@@ -102,14 +106,16 @@ static enum gz_result resize_history(struct gz_temporal *temporal, int width, in
 		return GZ_OK;
 	temporal->any = false;
 	temporal->width = temporal->height = 0;
-	uint8_t **const maps[] = { &temporal->kept, &temporal->kept_moved, &temporal->cast };
+	uint8_t **const maps[] = { &temporal->kept, &temporal->cast };
 	for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
 		free(*maps[i]);
 		*maps[i] = malloc(count);
 		if (!*maps[i])
 			return GZ_ERR_NO_MEM;
 	}
-	if (gz_image_resize(&temporal->history, width, height) != GZ_OK ||
+	free(temporal->errors);
+	temporal->errors = malloc(count * sizeof *temporal->errors);
+	if (!temporal->errors || gz_image_resize(&temporal->history, width, height) != GZ_OK ||
 	    gz_image_resize(&temporal->moved, width, height) != GZ_OK)
 		return GZ_ERR_NO_MEM;
 	temporal->width = width;
@@ -297,119 +303,6 @@ static float bend2_at(const struct gz_temporal *temporal, int x, int y, int spac
 	return squares_of(here - across * 0.5F) + squares_of(here - down * 0.5F);
 }
 
-/* The pixels between four places of a lattice, at some of which rays were cast. */
-struct cell {
-	int left, top, spacing; /* spacing 0: none */
-	size_t rays[4];         /* their pixels */
-	int count;
-	float error2; /* of the pixels between them */
-};
-
-/* Find the cell of a pixel, unless it is this one already. */
-static void find_cell(const struct join *join, int x, int y, int spacing, struct cell *cell)
-{
-	const struct gz_temporal *temporal = join->temporal;
-	if (spacing < 1 || (cell->spacing == spacing && x - cell->left < spacing))
-		return;
-	*cell = (struct cell) {
-		.left = x - (x + temporal->shift[0]) % spacing,
-		.top = y - (y + temporal->shift[1]) % spacing,
-		.spacing = spacing,
-	};
-	float sum = 0;
-	for (int k = 0; k < 4; k++) {
-		const int at_x = cell->left + (k & 1) * spacing;
-		const int at_y = cell->top + (k >> 1) * spacing;
-		if (at_x < 0 || at_y < 0 || at_x >= temporal->width || at_y >= temporal->height)
-			continue;
-		const size_t i = (size_t)at_y * (size_t)temporal->width + (size_t)at_x;
-		if (temporal->cast[i] >= BETWEEN)
-			continue;
-		sum += bend2_at(temporal, at_x, at_y, spacing);
-		cell->rays[cell->count++] = i;
-	}
-	if (cell->count > 0)
-		cell->error2 = BETWEEN_ERROR2 * sum / (float)cell->count;
-}
-
-/* How far the history may be trusted in a cell, [0, 1]. It has said what the rays of this frame
- * would show. The share of two estimates in the best one is that of their errors: of the history,
- * the mean of what it said. */
-static float trust_in(const struct join *join, const struct cell *cell)
-{
-	const struct gz_temporal *temporal = join->temporal;
-	float sum = 0;
-	if (cell->count == 0 || cell->error2 <= 0)
-		return 0;
-	for (int k = 0; k < cell->count; k++) {
-		const size_t i = cell->rays[k];
-		if (temporal->kept_moved[i] == UNKNOWN)
-			return 0;
-		const int x = (int)(i % (size_t)temporal->width);
-		const int y = (int)(i / (size_t)temporal->width);
-		const float error2 = squares_of(four_of(temporal->moved.pixels + 4 * i) -
-						four_of(frame_pixel(temporal, x, y)));
-		sum += error2;
-	}
-	return cell->error2 / (cell->error2 + sum / (float)cell->count);
-}
-
-/* One pixel while the camera moves. A ray's colour is taken; between rays the moved history is
- * mixed in, clamped to the range of the frame's neighbourhood, as far as it can be trusted. */
-static void join_moved(const struct join *join, int x, int y, struct cell *cell, float *trust)
-{
-	struct gz_temporal *temporal = join->temporal;
-	const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
-	const uint8_t *now = frame_pixel(temporal, x, y);
-	const uint8_t cast = temporal->cast[i];
-	uint8_t *pixel = temporal->history.pixels + 4 * i;
-	memcpy(pixel, now, 4);
-	temporal->kept[i] = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: of 4 frames */
-	if (cast < BETWEEN || temporal->kept_moved[i] == UNKNOWN)
-		return;
-	const int spacing = join->plan->layers[cast - BETWEEN].spacing, left = cell->left;
-	const bool known = cell->spacing == spacing;
-	find_cell(join, x, y, spacing, cell);
-	if (!known || cell->left != left)
-		*trust = trust_in(join, cell);
-	const float weight = join->weight * *trust;
-	if (weight <= 0)
-		return;
-	four least, greatest;
-	neighbourhood_range(join, x, y, spacing, &least, &greatest);
-	const four before =
-		least_of(greatest_of(four_of(temporal->moved.pixels + 4 * i), least), greatest);
-	const four here = four_of(now);
-	const four mixed = here + (before - here) * weight + 0.5F;
-	for (int c = 0; c < 3; c++)
-		pixel[c] = (uint8_t)mixed[c];
-}
-
-static void join_history_rows(void *user, size_t part, int worker)
-{
-	(void)worker;
-	const struct join *join = user;
-	struct gz_temporal *temporal = join->temporal;
-	const int from = (int)part * ROWS_A_PART;
-	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++) {
-		const size_t row = (size_t)y * (size_t)temporal->width;
-		struct cell cell = { 0 };
-		float trust = 0;
-		for (int x = 0; x < temporal->width; x++) {
-			const size_t i = row + (size_t)x;
-			uint8_t *pixel = temporal->history.pixels + 4 * i;
-			if (join->moves)
-				join_moved(join, x, y, &cell, &trust);
-			else
-				join_still(pixel, &temporal->kept[i], frame_pixel(temporal, x, y),
-					   temporal->cast[i]);
-		}
-		const uint32_t *history = gz_image_words(&temporal->history) + row;
-		for (int x = 0; x < temporal->width; x++)
-			join->out[row + (size_t)x] = history[x] | OPAQUE;
-	}
-}
-
 static double depth_of(const struct gz_ray_depths *depths, uint8_t byte)
 {
 	return depths->nearest + (depths->farthest - depths->nearest) * byte / 255;
@@ -480,57 +373,6 @@ static four sample_history(const struct gz_temporal *temporal, const double plac
 	return sum;
 }
 
-/* What the history shows of a pixel. False: it does not show that. */
-static bool move_pixel(const struct join *join, int x, int y, uint8_t *pixel)
-{
-	const struct gz_temporal *temporal = join->temporal;
-	const int width = temporal->width, height = temporal->height;
-	double place[2], depth;
-	if (!find_place(&join->movement, x, y, frame_pixel(temporal, x, y)[3], place, &depth) ||
-	    !(place[0] >= 0 && place[1] >= 0 && place[0] <= width - 1 && place[1] <= height - 1))
-		return false;
-	const size_t nearest = (size_t)(place[1] + 0.5) * (size_t)width + (size_t)(place[0] + 0.5);
-	const double shown =
-		depth_of(&join->movement.depths_before, temporal->history.pixels[4 * nearest + 3]);
-	if (!(fabs(shown - depth) <= DEPTH_SLACK))
-		return false;
-	const four none = { 0 }, value = sample_history(temporal, place);
-	const four rounded = least_of(greatest_of(value, none), none + 255) + 0.5F;
-	for (int c = 0; c < 4; c++)
-		pixel[c] = (uint8_t)rounded[c];
-	return true;
-}
-
-/* Whether the history of a pixel is asked for: where rays lie apart, and between them where they
- * differ. */
-static bool asks_history(const struct join *join, int x, int y, uint8_t cast, struct cell *cell)
-{
-	if (cast == UNKNOWN)
-		return false;
-	if (cast < BETWEEN)
-		return join->plan->layers[cast].spacing > 1;
-	find_cell(join, x, y, join->plan->layers[cast - BETWEEN].spacing, cell);
-	return cell->error2 > 0;
-}
-
-/* Move rows of the history to where the camera sees them now. */
-static void move_rows(void *user, size_t part, int worker)
-{
-	(void)worker;
-	const struct join *join = user;
-	struct gz_temporal *temporal = join->temporal;
-	const int from = (int)part * ROWS_A_PART;
-	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++) {
-		struct cell cell = { 0 };
-		for (int x = 0; x < temporal->width; x++) {
-			const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
-			const bool known = asks_history(join, x, y, temporal->cast[i], &cell) &&
-					   move_pixel(join, x, y, temporal->moved.pixels + 4 * i);
-			temporal->kept_moved[i] = known ? BETWEEN : UNKNOWN;
-		}
-	}
-}
-
 /* Find how the picture moves. False: nothing can be known of it. */
 static bool find_movement(const struct gz_temporal *temporal,
 			  const struct gz_temporal_content *content, struct movement *out_movement)
@@ -546,15 +388,154 @@ static bool find_movement(const struct gz_temporal *temporal,
 	       gz_ray_inverse_make(&out_movement->rays_before, &out_movement->before);
 }
 
-static void move_history(struct join *join, const struct gz_temporal_content *content)
+/* What the history shows of a pixel. False: it does not show that. */
+static bool find_said(const struct join *join, int x, int y, four *out_said)
+{
+	const struct gz_temporal *temporal = join->temporal;
+	const int width = temporal->width, height = temporal->height;
+	double place[2], depth;
+	if (!find_place(&join->movement, x, y, frame_pixel(temporal, x, y)[3], place, &depth) ||
+	    !(place[0] >= 0 && place[1] >= 0 && place[0] <= width - 1 && place[1] <= height - 1))
+		return false;
+	const size_t nearest = (size_t)(place[1] + 0.5) * (size_t)width + (size_t)(place[0] + 0.5);
+	const double shown =
+		depth_of(&join->movement.depths_before, temporal->history.pixels[4 * nearest + 3]);
+	if (!(fabs(shown - depth) <= DEPTH_SLACK))
+		return false;
+	*out_said = sample_history(temporal, place);
+	return true;
+}
+
+/* Whether the ray of a pixel has neighbours that others lie between. */
+static bool is_apart(const struct join *join, uint8_t cast)
+{
+	return cast < BETWEEN && join->plan->layers[cast].spacing > 1;
+}
+
+/* Find the errors at the rays of some rows. */
+static void judge_rows(void *user, size_t part, int worker)
+{
+	(void)worker;
+	const struct join *join = user;
+	const struct gz_temporal *temporal = join->temporal;
+	const int from = (int)part * ROWS_A_PART;
+	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++)
+		for (int x = 0; x < temporal->width; x++) {
+			const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
+			const uint8_t cast = temporal->cast[i];
+			four said;
+			if (!is_apart(join, cast))
+				continue;
+			struct gz_temporal_errors *errors = &temporal->errors[i];
+			errors->bend2 = bend2_at(temporal, x, y, join->plan->layers[cast].spacing);
+			errors->said2 = INFINITY;
+			if (errors->bend2 > 0 && find_said(join, x, y, &said))
+				errors->said2 =
+					squares_of(said - four_of(frame_pixel(temporal, x, y)));
+		}
+}
+
+/* The pixels between four places of a lattice, at some of which rays were cast. */
+struct cell {
+	int left, spacing; /* spacing 0: none */
+	float trust;
+};
+
+/* How far the history may be trusted in a cell, [0, 1]. It has said what the rays of this frame
+ * would show. The share of two estimates in the best one is that of their errors: of the history,
+ * the mean of what it said. */
+static float trust_in(const struct join *join, int left, int top, int spacing)
+{
+	const struct gz_temporal *temporal = join->temporal;
+	float between = 0, said = 0;
+	for (int k = 0; k < 4; k++) {
+		const int x = left + (k & 1) * spacing, y = top + (k >> 1) * spacing;
+		if (x < 0 || y < 0 || x >= temporal->width || y >= temporal->height)
+			continue;
+		const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
+		if (!is_apart(join, temporal->cast[i]) || temporal->errors[i].bend2 <= 0)
+			continue;
+		between += BETWEEN_ERROR2 * temporal->errors[i].bend2;
+		said += temporal->errors[i].said2;
+	}
+	return between > 0 ? between / (between + said) : 0;
+}
+
+/* Find the cell of a pixel, unless it is this one already. */
+static void find_cell(const struct join *join, int x, int y, int spacing, struct cell *cell)
+{
+	const int *shift = join->temporal->shift;
+	if (spacing < 1 || (cell->spacing == spacing && x - cell->left < spacing))
+		return;
+	cell->spacing = spacing;
+	cell->left = x - (x + shift[0]) % spacing;
+	cell->trust = trust_in(join, cell->left, y - (y + shift[1]) % spacing, spacing);
+}
+
+/* One pixel while the camera moves. A ray's colour is taken; between rays what the history shows is
+ * mixed in, clamped to the range of the frame's neighbourhood, as far as it can be trusted. */
+static void join_moved(const struct join *join, int x, int y, struct cell *cell)
 {
 	struct gz_temporal *temporal = join->temporal;
-	if (find_movement(temporal, content, &join->movement))
-		gz_workers_run(temporal->workers, move_rows, join,
-			       ((size_t)temporal->height + ROWS_A_PART - 1) / ROWS_A_PART);
-	else
-		memset(temporal->kept_moved, UNKNOWN,
-		       (size_t)temporal->width * (size_t)temporal->height);
+	const size_t i = (size_t)y * (size_t)temporal->width + (size_t)x;
+	const uint8_t *now = frame_pixel(temporal, x, y);
+	const uint8_t cast = temporal->cast[i];
+	uint8_t *pixel = temporal->moved.pixels + 4 * i;
+	four least, greatest, said;
+	memcpy(pixel, now, 4);
+	temporal->kept[i] = cast < BETWEEN ? cast : BETWEEN + 4; /* chosen: of 4 frames */
+	if (cast < BETWEEN || cast == UNKNOWN || !join->knows_movement)
+		return;
+	const int spacing = join->plan->layers[cast - BETWEEN].spacing;
+	find_cell(join, x, y, spacing, cell);
+	const float weight = join->weight * cell->trust;
+	if (weight < LEAST_WEIGHT || !find_said(join, x, y, &said))
+		return;
+	neighbourhood_range(join, x, y, spacing, &least, &greatest);
+	const four here = four_of(now);
+	const four mixed =
+		here + (least_of(greatest_of(said, least), greatest) - here) * weight + 0.5F;
+	for (int c = 0; c < 3; c++)
+		pixel[c] = (uint8_t)mixed[c];
+}
+
+static void join_history_rows(void *user, size_t part, int worker)
+{
+	(void)worker;
+	const struct join *join = user;
+	struct gz_temporal *temporal = join->temporal;
+	const int from = (int)part * ROWS_A_PART;
+	for (int y = from; y < from + ROWS_A_PART && y < temporal->height; y++) {
+		const size_t row = (size_t)y * (size_t)temporal->width;
+		struct cell cell = { 0 };
+		for (int x = 0; x < temporal->width; x++) {
+			const size_t i = row + (size_t)x;
+			uint8_t *pixel = temporal->history.pixels + 4 * i;
+			if (join->moves)
+				join_moved(join, x, y, &cell);
+			else
+				join_still(pixel, &temporal->kept[i], frame_pixel(temporal, x, y),
+					   temporal->cast[i]);
+		}
+		const struct gz_image *joined = join->moves ? &temporal->moved : &temporal->history;
+		const uint32_t *history = gz_image_words(joined) + row;
+		for (int x = 0; x < temporal->width; x++)
+			join->out[row + (size_t)x] = history[x] | OPAQUE;
+	}
+}
+
+static void join_frame(struct join *join)
+{
+	struct gz_temporal *temporal = join->temporal;
+	const size_t parts = ((size_t)temporal->height + ROWS_A_PART - 1) / ROWS_A_PART;
+	if (join->knows_movement)
+		gz_workers_run(temporal->workers, judge_rows, join, parts);
+	gz_workers_run(temporal->workers, join_history_rows, join, parts);
+	if (!join->moves)
+		return;
+	const struct gz_image image = temporal->history;
+	temporal->history = temporal->moved;
+	temporal->moved = image;
 }
 
 enum gz_result gz_temporal_end(struct gz_temporal *temporal,
@@ -576,11 +557,10 @@ enum gz_result gz_temporal_end(struct gz_temporal *temporal,
 	} else if (!gz_camera_same(&temporal->shown.camera, &content->camera)) {
 		join.moves = true;
 		join.weight = (float)params->weight;
-		move_history(&join, content);
+		join.knows_movement = find_movement(temporal, content, &join.movement);
 		temporal->still_frames = 0;
 	}
-	gz_workers_run(temporal->workers, join_history_rows, &join,
-		       ((size_t)temporal->height + ROWS_A_PART - 1) / ROWS_A_PART);
+	join_frame(&join);
 	temporal->shown = *content;
 	temporal->any = true;
 	temporal->frame = (temporal->frame + 1) % FRAMES;
@@ -606,7 +586,7 @@ void gz_temporal_free(struct gz_temporal *temporal)
 	gz_image_free(&temporal->history);
 	gz_image_free(&temporal->moved);
 	free(temporal->kept);
-	free(temporal->kept_moved);
+	free(temporal->errors);
 	free(temporal->cast);
 	*temporal = (struct gz_temporal) { 0 };
 }

@@ -44,6 +44,12 @@ struct gz_temporal_content {
 	bool deep;
 };
 
+/** Squared errors at a ray, of grey levels and all channels. */
+struct gz_temporal_errors {
+	float bend2; /**< how far it is from the means of its neighbours */
+	float said2; /**< how far the history is from it; INFINITY: it does not show it */
+};
+
 /** The history. Zero-initialised is empty; keep it from frame to frame. One thread at a time. */
 struct gz_temporal {
 	struct gz_workers *workers;
@@ -55,7 +61,8 @@ struct gz_temporal {
 	struct gz_temporal_content shown;  /**< what the history shows */
 	struct gz_image frame_image;       /**< render into this */
 	struct gz_image history, moved;    /**< size of the picture */
-	uint8_t *kept, *kept_moved, *cast; /**< for each pixel, how it is known */
+	uint8_t *kept, *cast;              /**< for each pixel, how it is known */
+	struct gz_temporal_errors *errors; /**< at each pixel with a ray apart from others */
 };
 
 /**
