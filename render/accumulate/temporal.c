@@ -409,7 +409,7 @@ static bool find_said(const struct join *join, int x, int y, four *out_said)
 /* Whether the ray of a pixel has neighbours that others lie between. */
 static bool is_apart(const struct join *join, uint8_t cast)
 {
-	return cast < BETWEEN && join->plan->layers[cast].spacing > 1;
+	return cast < GZ_PLAN_LAYERS_MAX && join->plan->layers[cast].spacing > 1;
 }
 
 /* Find the errors at the rays of some rows. */
