@@ -60,10 +60,12 @@ def read_image(path):
     with open(path, "rb") as source:
         data = source.read()
     end = data.index(b"\n\n") + 2
-    fields = dict(line.split(": ", 1) for line in data[:end].decode().splitlines()[1:] if line)
+    fields = dict(line.split(": ", 1) for line in data[:end].decode().splitlines()[1:] if ": " in line)
     sizes = [int(size) for size in fields["sizes"].split()]
     kind = ("<" if fields.get("endian", "little") == "little" else ">") + NRRD_TYPES[fields["type"]]
-    vectors = [vector.strip("()").split(",") for vector in fields["space directions"].split()]
+    # a spacing that is not known is not stated, and taken as 1
+    directions = fields.get("space directions", "(1,0,0) (0,1,0) (0,0,1)")
+    vectors = [vector.strip("()").split(",") for vector in directions.split()]
     spacing = [max(abs(float(number)) for number in vector) for vector in vectors]
     image = vtkImageData()
     image.SetDimensions(*sizes)

@@ -34,6 +34,10 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.acuity_foveal_deg", GZ_OPTION_DOUBLE, AT(acuity_foveal_deg), 0.001, 1,
 	  .preset = "0.020833333333333332",
 	  .help = "smallest cycle that the eye resolves at the gaze, degrees" },
+	{ "foveation.acuity_full_deg", GZ_OPTION_DOUBLE, AT(acuity_full_deg), 0, 180,
+	  .preset = "2.5", /* the fovea, docs/units.md */
+	  .help = "acuity, contrast: how far from the gaze every pixel may have a ray, even where "
+		  "pixels are finer than the eye resolves, degrees" },
 	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
 	  .preset = "0.5",
 	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "

@@ -75,6 +75,7 @@ struct gz_foveation {
 	int filter;                /**< enum gz_filter; pyramids only, regions are bilinear */
 	double acuity_slope;       /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg;  /**< omega0: degrees per cycle at the gaze */
+	double acuity_full_deg;    /**< acuity, contrast: every pixel may have a ray up to here */
 	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
 	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */
 	double contrast_first;     /**< spacing of the first rays, times what the eye resolves */

@@ -39,6 +39,7 @@ struct gz_plan_context {
 	double rays_per_mm;           /**< along the axis with fewer */
 	struct gz_plan_curve spacing; /**< rad, or px with spacing_in_px */
 	bool spacing_in_px;
+	double full_rad;                 /**< spacings are at most 1 px nearer to the gaze */
 	struct gz_plan_curve step;       /**< of a table */
 	double scale_all, scale_outside; /**< factors of spacings: everywhere, outside the fovea */
 	double steps_per_px;             /**< of the request */
@@ -54,6 +55,9 @@ void gz_plan_context_make(const struct gz_plan_request *request,
 
 /** Set the spacing curve to what the eye resolves. */
 void gz_plan_set_acuity_curve(struct gz_plan_context *context);
+
+/** The same, and full_rad to the setting. */
+void gz_plan_set_foveal_acuity_curve(struct gz_plan_context *context);
 
 /** Set the spacing and step curves from the user's table. */
 void gz_plan_set_table_curves(struct gz_plan_context *context);

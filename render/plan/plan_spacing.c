@@ -39,6 +39,12 @@ void gz_plan_set_acuity_curve(struct gz_plan_context *context)
 	curve_add(&context->spacing, 180, to_deg / 2 / deg_per_rad);
 }
 
+void gz_plan_set_foveal_acuity_curve(struct gz_plan_context *context)
+{
+	gz_plan_set_acuity_curve(context);
+	context->full_rad = context->foveation->acuity_full_deg / deg_per_rad;
+}
+
 void gz_plan_set_table_curves(struct gz_plan_context *context)
 {
 	const struct gz_spacing_table *table = &context->foveation->table;
@@ -179,12 +185,13 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 {
 	double length_mm;
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
-	double spacing = curve_at(&context->spacing, eccentricity);
+	const double unit = context->spacing_in_px ? 1 : length_mm * context->rays_per_mm;
+	double spacing = curve_at(&context->spacing, eccentricity) * unit;
+	if (eccentricity < context->full_rad)
+		spacing = fmin(spacing, 1);
 	if (context->round == GZ_ROUND_FURTHER)
 		spacing = fmax(spacing * context->foveation->contrast_finest,
-			       contrast_spacing(context, eccentricity));
-	if (!context->spacing_in_px)
-		spacing *= length_mm * context->rays_per_mm;
+			       contrast_spacing(context, eccentricity) * unit);
 	if (context->round == GZ_ROUND_FIRST)
 		spacing = context->foveation->contrast_first * fmax(spacing, 1);
 	if (context->scale_all * context->scale_outside > 1)

@@ -150,6 +150,42 @@ static void acuity_is_full_resolution_where_the_display_limits_the_eye(void **st
 	}
 }
 
+/* Tiles with a place within some degrees of the gaze, and how many of them leave pixels out. */
+static void check_fovea(int method, double full_deg, struct gz_point gaze, bool whole)
+{
+	enum { WIDTH = 3840, HEIGHT = 2160 };
+	struct gz_foveation foveation = gz_foveation_default();
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	struct gz_plan plan = { 0 };
+	foveation.method = method;
+	foveation.acuity_full_deg = full_deg;
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, WIDTH, HEIGHT, &plan), GZ_OK);
+	int within = 0, coarse = 0;
+	for (size_t i = 0; i < plan.tile_count; i++) {
+		const struct gz_tile *tile = &plan.tiles[i];
+		const struct gz_point at = { ((float)tile->x + 0.5F) / WIDTH,
+					     ((float)tile->y + 0.5F) / HEIGHT };
+		if (gz_display_angle_deg(&display, gaze, at) >= 2.5)
+			continue;
+		within++;
+		coarse += plan.layers[tile->layer].spacing > 1 || plan.steps[tile->step] > 1;
+	}
+	assert_true(within > 100);
+	if ((coarse == 0) != whole)
+		fail_msg("%d of %d tiles within 2.5 degrees are coarse", coarse, within);
+	gz_plan_free(&plan);
+}
+
+static void fovea_is_whole_on_a_fine_display(void **state)
+{
+	(void)state;
+	const struct gz_point gazes[] = { { 0.5F, 0.5F }, { 0.03F, 0.95F } };
+	for (int i = 0; i < 2; i++) {
+		check_fovea(GZ_METHOD_ACUITY, 2.5, gazes[i], true);
+		check_fovea(GZ_METHOD_ACUITY, 0, gazes[i], false);
+	}
+}
+
 static void acuity_takes_few_rays(void **state)
 {
 	(void)state;
@@ -470,6 +506,7 @@ TEST_SUITE(plan)
 		cmocka_unit_test(standard_casts_each_pixel),
 		cmocka_unit_test(acuity_is_never_coarser_than_the_eye_resolves),
 		cmocka_unit_test(acuity_is_full_resolution_where_the_display_limits_the_eye),
+		cmocka_unit_test(fovea_is_whole_on_a_fine_display),
 		cmocka_unit_test(acuity_takes_few_rays),
 		cmocka_unit_test(mdc_casts_a_quarter_outside_its_square),
 		cmocka_unit_test(distance_rule_lengthens_steps_up_to_its_floor),

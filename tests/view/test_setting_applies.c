@@ -31,6 +31,7 @@ static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 		{ "foveation.step_phase", { 0, 0, 0, 1, 0, 0, 1, 1 } },
 		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1, 1 } },
 		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0, 1 } },
+		{ "foveation.acuity_full_deg", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.acuity_step_growth", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.contrast_finest", { 0, 0, 0, 0, 0, 0, 0, 1 } },
 		{ "foveation.contrast_threshold", { 0, 0, 0, 0, 0, 0, 0, 1 } },

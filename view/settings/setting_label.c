@@ -74,6 +74,7 @@ static const struct {
 	{ "foveation.step_rule", "step length grows" },
 	{ "foveation.acuity_slope", "acuity slope, deg/deg" },
 	{ "foveation.acuity_foveal_deg", "finest cycle, degrees" },
+	{ "foveation.acuity_full_deg", "every pixel up to, degrees" },
 	{ "foveation.acuity_step_growth", "growth of steps" },
 	{ "foveation.contrast_threshold", "least contrast seen" },
 	{ "foveation.contrast_first", "first spacing, times" },
