@@ -676,7 +676,7 @@ static void list_ways(struct ways *out)
 	out->count = 0;
 	(void)add_way(out, "presets");
 	add_way(out, "odds of each sample for itself")->odds = own;
-	add_way(out, "so, and nothing added")->odds = own;
+	add_way(out, "the same, and no score raised or lowered")->odds = own;
 	memset(out->way[out->count - 1].costs.added, 0, sizeof out->way[0].costs.added);
 	add_way(out, "a change costs 0 ms")->costs.change_us = 0;
 	add_way(out, "a change costs 2 ms")->costs.change_us = 2000;
@@ -687,10 +687,10 @@ static void list_ways(struct ways *out)
 	add_way(out, "a saccade's end costs 4 ms")->costs.saccade_us = 4000;
 	add_way(out, "a saccade's end costs 8 ms")->costs.saccade_us = 8000;
 	add_way(out, "a saccade's end costs 32 ms")->costs.saccade_us = 32000;
-	add_way(out, "saccade as it is")->costs.added[GZ_FOREST_SACCADE] = 0;
+	add_way(out, "saccade 0")->costs.added[GZ_FOREST_SACCADE] = 0;
 	add_way(out, "saccade -0.4")->costs.added[GZ_FOREST_SACCADE] = units(-0.4);
 	add_way(out, "noise 0.3")->costs.added[GZ_FOREST_NOISE] = units(0.3);
-	add_way(out, "ringing as it is")->costs.added[GZ_FOREST_RINGING] = 0;
+	add_way(out, "ringing 0")->costs.added[GZ_FOREST_RINGING] = 0;
 	add_way(out, "ringing 0.6")->costs.added[GZ_FOREST_RINGING] = units(0.6);
 	add_way(out, "odds over 50 ms")->odds.reach_us = 50000;
 	add_way(out, "odds over 75 ms")->odds.reach_us = 75000;
