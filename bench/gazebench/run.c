@@ -130,8 +130,8 @@ static const struct gz_option options[] = {
 	  .offset = AT(camera_path),
 	  .max = GZ_PATH_SIZE,
 	  .preset = "",
-	  .help = "file with a camera a frame, 60 frames a second: measure what the eye sees "
-		  "come and go along it, too; lines of eye x y z, look_at x y z [up x y z "
+	  .help = "file with a camera for each frame, 60 frames a second: also measure what the "
+		  "eye sees come and go along it; lines of eye x y z, look_at x y z [up x y z "
 		  "[fov_deg]], or frames.tsv of a session" },
 	{ .key = "cache",
 	  .type = GZ_OPTION_STRING,

@@ -42,7 +42,8 @@ static const struct gz_option speed_options[] = {
 	{ "threads", GZ_OPTION_INT, AT(threads), 0, 256, .preset = "0",
 	  .help = "0: one for each processor" },
 	{ "kinds", GZ_OPTION_INT, AT(kinds), 1, 4, .preset = "4",
-	  .help = "of frames, the first ones: grey, stipples, hatches, grey with every pixel" },
+	  .help = "how many kinds of frames, in this order: grey, stipples, hatches, every pixel "
+		  "grey" },
 	{ "isovalue", GZ_OPTION_DOUBLE, AT(isovalue), -1e30, 1e30, .preset = "-1e30",
 	  .help = "of volumes, in place of the scene's" },
 };

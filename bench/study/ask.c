@@ -424,7 +424,7 @@ static enum gz_result read_camera_paths(struct asking *asking)
 		gz_camera_path_hash(&study->camera_paths[i], hash);
 	}
 	if (result == GZ_OK && study->camera_paths[0].count < GZ_TEMPORAL_FRAMES) {
-		gz_err(asking->log, "%s: has %zu cameras; what the eye sees of changes takes %d",
+		gz_err(asking->log, "%s: has %zu cameras; the camera path error needs %d or more",
 		       file, study->camera_paths[0].count, GZ_TEMPORAL_FRAMES);
 		result = GZ_ERR_INVAL;
 	}
@@ -515,7 +515,7 @@ static enum gz_result check_camera_path(const struct asking *asking)
 	const struct gz_study_request *request = asking->request;
 	if (!request->camera_path || request->accuracy != GZ_STUDY_ACCURACY_NONE)
 		return GZ_OK;
-	gz_err(asking->log, "%s: a camera path is for errors, which --errors none leaves out",
+	gz_err(asking->log, "%s: a camera path measures an error, but --errors none measures none",
 	       request->camera_path);
 	return GZ_ERR_INVAL;
 }

@@ -5,7 +5,7 @@
 #ifndef GZ_RENDER_DATA_BOX_POLYGON_H
 #define GZ_RENDER_DATA_BOX_POLYGON_H
 
-/** A box and a plane share at most so many corners. */
+/** Most corners of a polygon in which a plane crosses a box. */
 #define GZ_BOX_POLYGON_MAX 6
 
 /**

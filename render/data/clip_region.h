@@ -28,8 +28,8 @@ struct gz_clip_region {
 	 *  off. */
 	double normal[3];
 	/** Where the plane crosses the volume's box, as a fraction of the box's width along the
-	 *  normal, 0 to 1: 0 leaves nothing and 1 everything. So along an axis it is what greatest
-	 *  is, and 1 less what least is. */
+	 *  normal, 0 to 1: 0 leaves nothing and 1 everything. With a normal along an axis it
+	 *  equals greatest there; with the opposite normal it equals 1 minus least. */
 	double offset;
 };
 
@@ -49,7 +49,7 @@ bool gz_clip_region_valid(const struct gz_clip_region *clip);
 /** Whether a region leaves out anything of the volume. A plane at an offset of 1 counts, too. */
 bool gz_clip_region_cuts(const struct gz_clip_region *clip);
 
-/** A clip region in coordinates of somebody's own. */
+/** A clip region in a caller's own coordinates. */
 struct gz_clip_bounds {
 	double least[3], greatest[3]; /**< corners of the clip box */
 	/** A place (x, y, z) is kept where plane[0] x + plane[1] y + plane[2] z <= plane[3]. The
@@ -98,8 +98,8 @@ void gz_clip_region_voxels(const struct gz_clip_region *clip, const struct gz_vo
 /** Whether a voxel is among them. */
 bool gz_clip_voxels_hold(const struct gz_clip_voxels *voxels, const int at[3]);
 
-/** Leave of the voxels from @p from up to but without @p to in the row at (y, z), which lie in the
- *  clip box, those that the clip plane keeps: they are neighbours. */
+/** Narrow a row of voxels at (y, z), from @p from to before @p to, to those that the clip plane
+ *  keeps, which are neighbours. The row lies in the clip box. */
 void gz_clip_voxels_keep(const struct gz_clip_voxels *voxels, int y, int z, int *from, int *to);
 
 /**

@@ -82,7 +82,7 @@ enum gz_result gz_tar_find(struct gz_byte_stream *stream, const char *name, cons
 		if (all_zero(block, got)) /* or no byte at all */
 			return GZ_ERR_NOT_FOUND;
 		if (got < sizeof block || !gz_tar_header_decode(block, &member)) {
-			gz_err(log, "%s: damaged, or no tar file; fetch it again", path);
+			gz_err(log, "%s: damaged, or not a tar file; fetch it again", path);
 			return GZ_ERR_FORMAT;
 		}
 		if (member.is_file && strcmp(member.name, name) == 0) {

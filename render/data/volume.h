@@ -129,15 +129,15 @@ enum gz_volume_colour {
 
 /** By which kind of device a volume was made, as far as its file says so. */
 enum gz_modality {
-	GZ_MODALITY_UNKNOWN, /**< not said; most formats cannot */
+	GZ_MODALITY_UNKNOWN, /**< the file does not say; most formats cannot */
 	GZ_MODALITY_CT,
 	GZ_MODALITY_MR,
 	GZ_MODALITY_OTHER,
 	GZ_MODALITY_COUNT,
 };
 
-/** The modality of a term of DICOM (PS3.3, C.7.3.1.1.1): "CT", "MR". OT, other, says nothing of the
- *  values, like an empty one. */
+/** The modality of a term of DICOM (PS3.3, C.7.3.1.1.1): "CT", "MR". OT ("other") and an empty term
+ *  say nothing of the values and give GZ_MODALITY_UNKNOWN. */
 enum gz_modality gz_modality_of_term(const char *term);
 
 /** Longest edge of a volume, voxels. */

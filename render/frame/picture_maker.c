@@ -408,8 +408,10 @@ static enum gz_result make_whole(struct gz_picture_maker *maker,
 			arrived_ns = now_ns;
 		if (result == GZ_OK && gz_ns_to_s(now_ns - arrived_ns) > wait_s) {
 			gz_err(maker->log,
-			       "not printed: what the picture lacks has not arrived for %g s; look "
-			       "whether its files can be read, or try again when it is shown whole",
+			       "not printed: parts of the picture are missing, and none has "
+			       "arrived for "
+			       "%g s; check that its files can be read, or print again when it is "
+			       "complete",
 			       wait_s);
 			return GZ_ERR_TIMEOUT;
 		}

@@ -29,7 +29,7 @@
  *  the map by less than 0.001 (root mean square). */
 #define GZ_HATCH_ROUNDS 2
 
-/** Most that a width is multiplied or divided by. Chosen: what is wider is no line. */
+/** Most that a width is multiplied or divided by. Chosen: anything wider would be no line. */
 #define GZ_HATCH_WIDTH_CHANGE 3.0F
 
 /** Which pixels lines draw, and how dark. All pointers are borrowed. */

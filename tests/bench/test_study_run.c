@@ -418,11 +418,11 @@ static void camera_path_that_cannot_be_measured_is_refused(void **state)
 	(void)state;
 	struct gz_study_request request = request_of("centre");
 	request.camera_path = write_turn("short.csv", 7, 1);
-	refused(&request, GZ_ERR_INVAL, "has 7 cameras; what the eye sees of changes takes 8");
+	refused(&request, GZ_ERR_INVAL, "has 7 cameras; the camera path error needs 8 or more");
 	request.camera_path = "/nowhere.csv";
 	refused(&request, GZ_ERR_NOT_FOUND, "/nowhere.csv");
 	request.accuracy = GZ_STUDY_ACCURACY_NONE;
-	refused(&request, GZ_ERR_INVAL, "--errors none leaves out");
+	refused(&request, GZ_ERR_INVAL, "--errors none measures none");
 }
 
 /* ---- interruptions ---- */

@@ -220,7 +220,7 @@ static void projects_that_are_wrong_are_refused_with_a_line(void **state)
 			   "has no main.plist");
 	check_refused_file(files_write("short.inv3", tar.bytes, 700), GZ_ERR_FORMAT, "");
 	check_refused_file(files_write("text.inv3", "no tar file at all", 18), GZ_ERR_FORMAT,
-			   "damaged, or no tar file");
+			   "damaged, or not a tar file");
 }
 
 static void header_with_any_byte_changed_is_read_or_refused(void **state)

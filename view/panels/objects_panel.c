@@ -424,8 +424,9 @@ static enum gz_objects_outcome draw_selected(const struct gz_objects_panel *pane
 	changed |= draw_share_setting("transparency",
 				      "how much of what is behind it shows, in illustrations",
 				      &look.style.transparency);
-	changed |= draw_said_setting("drawing", "how illustrations draw it; scene: as all of it",
-				     gz_illustration_said_drawings, &look.style.drawing);
+	changed |=
+		draw_said_setting("drawing", "how illustrations draw it; scene: as the whole scene",
+				  gz_illustration_said_drawings, &look.style.drawing);
 	changed |= draw_said_setting("hatch direction",
 				     "which way its strokes run: along tubes and ridges, or around",
 				     gz_illustration_said_directions, &look.style.hatch_direction);

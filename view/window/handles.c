@@ -76,6 +76,7 @@ void gz_handle_draw_line(struct gz_place from, struct gz_place to, struct gz_pai
 void gz_handles_toggled(struct gz_window *window, bool shown, const char *what)
 {
 	if (shown && gz_window_has_sections(window))
-		gz_info(window->log, "the %s has its handles in the picture without slices", what);
+		gz_info(window->log, "handles of the %s show only in the picture without slices",
+			what);
 	gz_window_wake_panels(window);
 }
