@@ -299,6 +299,7 @@ static void pyramid_of_any_size_and_gaze_follows_its_formulas(void **state)
 			struct gz_foveation foveation = gz_foveation_default();
 			foveation.filter = g % 2 ? GZ_FILTER_BILINEAR : GZ_FILTER_CATMULL_ROM;
 			foveation.acuity_slope = g % 8 < 4 ? 0.4 : 0.12;
+			foveation.acuity_full_deg = 0; /* more coarse tiles */
 			struct scene scene;
 			make_scene(&foveation, gazes[g / 4], sizes[s][0], sizes[s][1],
 				   (uint32_t)(s + g), g % 4 < 2 ? NOISE : SPOTS_ON_FLAT, &scene);
