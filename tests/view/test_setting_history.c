@@ -89,6 +89,20 @@ static void quick_changes_of_the_camera_are_one_step_and_slow_ones_are_not(void 
 	assert_true(camera->eye[0] == first + 3);
 }
 
+/* A unit says nothing about what was undone. */
+static void steps_are_named_without_units(void **state)
+{
+	struct place *place = *state;
+	place->settings.rays.clip.offset = 0.25;
+	note(place);
+	place->settings.rays.illustration.single.detail_frequency = 0.125;
+	note(place);
+	gz_setting_history_undo(place->history, place->name);
+	assert_string_equal(place->name, "Shading map, details");
+	gz_setting_history_undo(place->history, place->name);
+	assert_string_equal(place->name, "Clip, place of the plane");
+}
+
 static void foreign_steps_keep_their_place(void **state)
 {
 	struct place *place = *state;
@@ -157,6 +171,8 @@ TEST_SUITE(setting_history)
 		cmocka_unit_test_setup_teardown(
 			quick_changes_of_the_camera_are_one_step_and_slow_ones_are_not, make_place,
 			free_place),
+		cmocka_unit_test_setup_teardown(steps_are_named_without_units, make_place,
+						free_place),
 		cmocka_unit_test_setup_teardown(foreign_steps_keep_their_place, make_place,
 						free_place),
 		cmocka_unit_test_setup_teardown(

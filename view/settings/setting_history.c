@@ -236,11 +236,11 @@ bool gz_setting_history_can_redo(const struct gz_setting_history *history)
 /* One key by its name, several by their section. */
 static void print_step(const struct step *step, char out_name[GZ_SETTING_STEP_SIZE])
 {
-	char section[GZ_SETTING_LABEL_SIZE], label[GZ_SETTING_LABEL_SIZE];
+	char section[GZ_SETTING_LABEL_SIZE], name[GZ_SETTING_LABEL_SIZE];
 	gz_setting_section(step->changes[0].option, section);
-	gz_setting_label(step->changes[0].option, label);
+	gz_setting_name(step->changes[0].option, name);
 	snprintf(out_name, GZ_SETTING_STEP_SIZE, "%s%s%s", section, step->count == 1 ? ", " : "",
-		 step->count == 1 ? label : "");
+		 step->count == 1 ? name : "");
 }
 
 static enum gz_history_outcome take_step(struct gz_setting_history *history,

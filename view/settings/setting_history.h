@@ -71,8 +71,8 @@ bool gz_setting_history_can_undo(const struct gz_setting_history *history);
 /** Whether there is a step to redo. */
 bool gz_setting_history_can_redo(const struct gz_setting_history *history);
 
-/** Undo the last step. @param[out] out_name  what it was about, "Light, ambient share"; set for
- *  GZ_HISTORY_SETTING */
+/** Undo the last step. @param[out] out_name  what it was about, without its unit: "Light, ambient
+ *  share"; set for GZ_HISTORY_SETTING */
 enum gz_history_outcome gz_setting_history_undo(struct gz_setting_history *history,
 						char out_name[GZ_SETTING_STEP_SIZE]);
 

@@ -29,11 +29,11 @@ static const struct {
 	{ "light.occlusion_radius", "occlusion radius, voxels" },
 	{ "light.shadow_steps", "shadow steps, 0 = off" },
 	{ "light.shadow_reach", "shadow reach, voxels" },
-	{ "clip.least", "from, share of the box" },
-	{ "clip.greatest", "to, share of the box" },
+	{ "clip.least", "box begins at, share" },
+	{ "clip.greatest", "box ends at, share" },
 	{ "clip.plane", "oblique plane" },
 	{ "clip.normal", "plane faces" },
-	{ "clip.offset", "plane, share of the width" },
+	{ "clip.offset", "place of the plane, share" },
 	{ "environment.cube", "folder of six pictures" },
 	{ "environment.up", "zenith" },
 	{ "environment.horizon", "colour at the horizon" },
@@ -149,6 +149,13 @@ void gz_setting_label(const struct gz_option *option, char out_text[GZ_SETTING_L
 	for (char *at = out_text; *at; at++)
 		if (*at == '_')
 			*at = ' ';
+}
+
+/* Labels have their unit after a comma, or their ends after a colon. */
+void gz_setting_name(const struct gz_option *option, char out_text[GZ_SETTING_LABEL_SIZE])
+{
+	gz_setting_label(option, out_text);
+	out_text[strcspn(out_text, ",:")] = '\0';
 }
 
 void gz_setting_section(const struct gz_option *option, char out_text[GZ_SETTING_LABEL_SIZE])

@@ -15,6 +15,9 @@ enum { GZ_SETTING_LABEL_SIZE = 64 };
 /** Print the name of a setting with its unit, without its section. */
 void gz_setting_label(const struct gz_option *option, char out_text[GZ_SETTING_LABEL_SIZE]);
 
+/** Print the name of a setting without its unit and its section: "field of view". */
+void gz_setting_name(const struct gz_option *option, char out_text[GZ_SETTING_LABEL_SIZE]);
+
 /** Print the name of a setting's section, which begins with a capital: "Camera". */
 void gz_setting_section(const struct gz_option *option, char out_text[GZ_SETTING_LABEL_SIZE]);
 
