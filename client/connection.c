@@ -311,7 +311,8 @@ void gz_subscriber_take_events(struct gz_subscriber *subscriber)
 			subscriber->told = GZ_HANDSHAKE_FINE;
 			subscriber->hang_ups = 0;
 			subscriber->connections++;
-			if (subscriber->connections > 1)
+			/* A retry that overtakes libzmq's own connects twice. */
+			if (subscriber->connections > 1 && !subscriber->connected)
 				gz_info(subscriber->log, "%s: connected again",
 					subscriber->endpoint);
 			gz_board_link_connected(&subscriber->board);

@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <zmq.h>
 
 #include "base/clock.h"
 #include "protocol/board/board_door.h"
@@ -465,6 +466,50 @@ static void readers_of_the_board_are_counted_and_waited_for(void **state)
 	end_daemon(SIGTERM);
 }
 
+static void wait_for_handshakes(struct gz_subscriber *subscriber, uint64_t count)
+{
+	const int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	while (subscriber->connections < count) {
+		assert_true(gz_clock_now_ns() < deadline_ns);
+		gz_subscriber_take_events(subscriber);
+	}
+}
+
+static void count_connected_again(void *user, enum gz_log_level level, const char *module,
+				  const char *message)
+{
+	(void)level;
+	(void)module;
+	*(int *)user += strstr(message, "connected again") != NULL;
+}
+
+/* A retry overtook the connection that libzmq had just made, and both were told. */
+static void connection_made_twice_is_told_once(void **state)
+{
+	(void)state;
+	const struct gz_subscriber_params params = { .channel = "stream" };
+	struct gz_subscriber subscriber;
+	struct publisher publisher;
+	struct gz_log log;
+	int told = 0;
+	gz_log_init(&log, count_connected_again, &told, "info");
+	publisher_open(&publisher, "stream");
+	assert_int_equal(gz_subscriber_open(&subscriber, &params, &log), GZ_OK);
+	wait_for_handshakes(&subscriber, 1);
+	publisher_close(&publisher);
+	while (subscriber.connected)
+		gz_subscriber_take_events(&subscriber);
+	publisher_open(&publisher, "stream");
+	wait_for_handshakes(&subscriber, 2);
+	assert_int_equal(told, 1);
+	assert_int_equal(zmq_disconnect(subscriber.socket, subscriber.endpoint), 0);
+	assert_int_equal(zmq_connect(subscriber.socket, subscriber.endpoint), 0);
+	wait_for_handshakes(&subscriber, 3);
+	gz_subscriber_close(&subscriber);
+	publisher_close(&publisher);
+	assert_int_equal(told, 1);
+}
+
 TEST_SUITE(board_link)
 {
 	const struct CMUnitTest tests[] = {
@@ -477,6 +522,7 @@ TEST_SUITE(board_link)
 		cmocka_unit_test(door_where_nobody_answers_leaves_the_socket),
 		cmocka_unit_test(malformed_messages_on_the_board_are_counted),
 		cmocka_unit_test(latest_gaze_comes_from_the_board),
+		cmocka_unit_test(connection_made_twice_is_told_once),
 		cmocka_unit_test_teardown(killed_daemon_that_returns_is_read_at_its_new_board,
 					  kill_daemon),
 		cmocka_unit_test_teardown(stream_of_a_killed_daemon_goes_on_with_the_next,
