@@ -352,8 +352,8 @@ static void draw_compare_marks(struct gz_window *window, const struct gz_window_
 		draw_divider(window, standard);
 		return;
 	}
-	snprintf(text, sizeof text, "difference of %s and %s, times %g", window->record.method,
-		 standard, window->settings.view.difference_gain);
+	snprintf(text, sizeof text, "difference to %s, times %g", standard,
+		 window->settings.view.difference_gain);
 	draw_compare_label(window, text,
 			   (gz_window_place_of(window, (struct gz_point) { 1, 1 }).x -
 			    gz_text_room(1, text).x) /
