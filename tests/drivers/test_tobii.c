@@ -99,8 +99,9 @@ static void sample_time_is_when_it_was_taken_whatever_the_librarys_clock(void **
 {
 	(void)state;
 	struct gz_device_counters counters;
-	struct gz_device *device = stage_start(&stage);
+	/* The library sends as soon as it is started, whenever this thread goes on. */
 	int64_t begin_ns = gz_clock_now_ns(), last_ns = 0;
+	struct gz_device *device = stage_start(&stage);
 	for (int i = 0; i < 100; i++) {
 		struct gz_sample sample = device_read_sample(device);
 		int64_t now_ns = gz_clock_now_ns();
