@@ -83,6 +83,29 @@ class Window(WindowCase):
         self.tool("key", "question")
         self.until(lambda p: self.below_line(p) == self.below_line(before), "keys hidden")
 
+    def test_key_that_does_nothing_says_so_once(self):
+        self.start("--gaze", "mouse", "--method", "standard")
+        self.move(240, 160)
+        quiet = self.rest()
+        corner = (240, 200, *SIZE)
+        # Modifiers alone, typed text and bound keys are no reason.
+        for key in ("shift", "ctrl", "alt+shift", "Caps_Lock", "Caps_Lock", "question"):
+            self.press(key)
+        self.press("question")
+        self.find("yj9")
+        self.press("Escape")
+        self.assertTrue(self.rest().part(*corner) == quiet.part(*corner), "something is said")
+        self.press("shift+k")
+        self.until(lambda p: p.part(*corner) != quiet.part(*corner), "a message")
+        self.tool("key", "shift+k", "k", "9", "Home")
+        self.until(lambda p: p.part(*corner) == quiet.part(*corner), "the message goes")
+        self.press("k")
+        self.leave()
+        told = [line for line in self.messages().splitlines() if "H lists the keys" in line]
+        self.assertEqual(len(told), 2, told)
+        self.assertIn("Shift+K does nothing here", told[0])
+        self.assertIn("K, Play time points: not possible at present", told[1])
+
     def test_settings_are_changed_in_the_panel_while_the_gaze_stays(self):
         self.start("--gaze", "mouse", "--method", "standard")
         self.move(100, 300)

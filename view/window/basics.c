@@ -13,10 +13,13 @@
 
 #define GZ_LOG_MODULE "window"
 
+static bool has_scene(const struct gz_window *window)
+{
+	return window->maker != NULL;
+}
+
 static void choose_method(struct gz_window *window, int method)
 {
-	if (!window->maker)
-		return;
 	if (gz_methods[method].needs_table && window->settings.foveation.table.count == 0) {
 		gz_warn(window->log,
 			"the scene names no table of spacings, which the method %s needs: give "
@@ -64,19 +67,21 @@ static bool is_method(const struct gz_window *window, int method)
 	return window->settings.foveation.method == method;
 }
 
-#define METHOD(digit, method, text, what, label)                                     \
-	{ .key = GLFW_KEY_##digit,                                                   \
-	  .number = (method),                                                        \
-	  .keys = (text),                                                            \
-	  .help = (what),                                                            \
-	  .name = (label),                                                           \
-	  .menu = GZ_MENU_PICTURE,                                                   \
-	  .submenu = "Method",                                                       \
-	  .on_picture = true,                                                        \
-	  .is_on = is_method,                                                        \
-	  .run = choose_method },                                                    \
-	{                                                                            \
-		.key = GLFW_KEY_KP_##digit, .number = (method), .run = choose_method \
+#define METHOD(digit, method, text, what, label)                                      \
+	{ .key = GLFW_KEY_##digit,                                                    \
+	  .number = (method),                                                         \
+	  .keys = (text),                                                             \
+	  .help = (what),                                                             \
+	  .name = (label),                                                            \
+	  .menu = GZ_MENU_PICTURE,                                                    \
+	  .submenu = "Method",                                                        \
+	  .on_picture = true,                                                         \
+	  .is_on = is_method,                                                         \
+	  .applies = has_scene,                                                       \
+	  .run = choose_method },                                                     \
+	{                                                                             \
+		.key = GLFW_KEY_KP_##digit, .number = (method), .applies = has_scene, \
+		.run = choose_method                                                  \
 	}
 
 static bool is_settings_open(const struct gz_window *window)

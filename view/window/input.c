@@ -55,16 +55,22 @@ struct pressed_key {
 	bool repeated;
 };
 
-/* Run the first action of the parts that applies. */
-static bool run_first(struct gz_window *window, const struct pressed_key *pressed)
+/* Run the first action of the parts that applies. @return whether there is one; if not, out_other
+ * is one that has the key at other times, or NULL */
+static bool run_first(struct gz_window *window, const struct pressed_key *pressed,
+		      const struct gz_window_action **out_other)
 {
+	*out_other = NULL;
 	GZ_FOR_EACH_PART (part) {
 		for (size_t i = 0; i < (*part)->action_count; i++) {
 			const struct gz_window_action *action = &(*part)->actions[i];
 			if (!action_matches(action, pressed->key, pressed->letter,
-					    pressed->modifiers) ||
-			    (action->applies && !action->applies(window)))
+					    pressed->modifiers))
 				continue;
+			if (action->applies && !action->applies(window)) {
+				*out_other = action->name ? action : *out_other;
+				continue;
+			}
 			if (!pressed->repeated || action->repeats)
 				action->run(window, action->number);
 			return true;
@@ -73,9 +79,34 @@ static bool run_first(struct gz_window *window, const struct pressed_key *presse
 	return false;
 }
 
+/* Not of programs: modifiers, and what switches the keyboard or is the system's. */
+static bool is_key_of_programs(int key)
+{
+	return key != GLFW_KEY_UNKNOWN && key < GLFW_KEY_LEFT_SHIFT &&
+	       (key < GLFW_KEY_CAPS_LOCK || key > GLFW_KEY_PAUSE);
+}
+
+/* Nothing is run by a key. One that gives a character waits for it, as an action may have that. */
+static void note_idle_key(struct gz_window *window, const struct pressed_key *pressed,
+			  const struct gz_window_action *other)
+{
+	if (pressed->repeated || !is_key_of_programs(pressed->key))
+		return;
+	window->idle_key = (struct gz_window_idle_key) {
+		.key = pressed->key,
+		.letter = (char)pressed->letter,
+		.modifiers = pressed->modifiers,
+		.other = other,
+		.noted = true,
+	};
+	if (!pressed->letter || (pressed->modifiers & GZ_KEY_CONTROL))
+		gz_window_tell_idle_key(window);
+}
+
 /* Run the action of a key; all arguments are of GLFW. @return whether there is one */
 static bool run_key(struct gz_window *window, int key, int scancode, int modifiers, bool repeated)
 {
+	const struct gz_window_action *other;
 	if (window->alone)
 		return window->alone->key && window->alone->key(window, key, scancode, repeated);
 	if (gz_widgets_have_text() || gz_widgets_have_dialog() ||
@@ -88,7 +119,10 @@ static bool run_key(struct gz_window *window, int key, int scancode, int modifie
 		.modifiers = modifiers_of(modifiers),
 		.repeated = repeated,
 	};
-	return run_first(window, &pressed);
+	if (run_first(window, &pressed, &other))
+		return true;
+	note_idle_key(window, &pressed, other);
+	return false;
 }
 
 /* Run the action of a typed character that needs Shift on some layouts only. @return whether there
@@ -98,8 +132,9 @@ static bool run_character(struct gz_window *window, unsigned codepoint)
 	if (window->alone || gz_widgets_have_text() || gz_widgets_have_dialog() ||
 	    (codepoint != '?' && codepoint != '+'))
 		return false;
+	const struct gz_window_action *other;
 	const struct pressed_key pressed = { .letter = (int)codepoint };
-	return run_first(window, &pressed);
+	return run_first(window, &pressed, &other);
 }
 
 /* ---- mouse ---- */
@@ -127,6 +162,7 @@ static void on_window_key(GLFWwindow *glfw, int key, int scancode, int action, i
 		return;
 	gz_widgets_note_key(key);
 	window->key_ns = gz_clock_now_ns();
+	window->idle_key.noted = false;
 	window->key_taken = run_key(window, key, scancode, mods, action == GLFW_REPEAT);
 }
 
@@ -136,8 +172,8 @@ static void on_character(GLFWwindow *glfw, unsigned codepoint)
 	gz_window_wake_panels(window);
 	if (gz_window_is_search_starting(window))
 		gz_window_type_into_search(window, codepoint);
-	else if (!window->key_taken)
-		run_character(window, codepoint);
+	else if (!window->key_taken && !run_character(window, codepoint))
+		gz_window_tell_idle_key(window);
 }
 
 static void click_picture(struct gz_window *window)

@@ -5,6 +5,7 @@
 
 #include <GLFW/glfw3.h>
 
+#include "base/clock.h"
 #include "view/panels/keys_panel.h"
 #include "view/panels/widgets.h"
 #include "view/settings/setting_label.h"
@@ -12,6 +13,10 @@
 #include "view/window/window_state.h"
 
 #define GZ_LOG_MODULE "window"
+
+/* Time after a message that a key does nothing without another one (chosen: as long as it is
+ * shown). */
+#define IDLE_KEY_QUIET_NS (4 * GZ_NS_PER_S)
 
 /* Most rows of actions and settings (chosen: more than twice as many as there are), and of objects
  * and their regions. */
@@ -31,6 +36,7 @@ struct gz_window_keys {
 	char texts[SETTINGS_MAX][SETTING_TEXT_SIZE];
 	size_t setting_count;
 	char objects[OBJECTS_MAX][OBJECT_TEXT_SIZE]; /* texts of the objects' rows */
+	int64_t idle_told_ns; /* when a key that does nothing was told last; 0: never */
 };
 
 /* Groups in the order of the list (chosen: what is needed most comes first). */
@@ -200,8 +206,13 @@ static const struct {
 	int key;
 	const char *name;
 } key_names[] = {
-	{ GLFW_KEY_ESCAPE, "Esc" }, { GLFW_KEY_LEFT, "Left" }, { GLFW_KEY_RIGHT, "Right" },
-	{ GLFW_KEY_UP, "Up" },      { GLFW_KEY_DOWN, "Down" },
+	{ GLFW_KEY_ESCAPE, "Esc" },      { GLFW_KEY_LEFT, "Left" },
+	{ GLFW_KEY_RIGHT, "Right" },     { GLFW_KEY_UP, "Up" },
+	{ GLFW_KEY_DOWN, "Down" },       { GLFW_KEY_TAB, "Tab" },
+	{ GLFW_KEY_ENTER, "Enter" },     { GLFW_KEY_BACKSPACE, "Backspace" },
+	{ GLFW_KEY_INSERT, "Insert" },   { GLFW_KEY_DELETE, "Delete" },
+	{ GLFW_KEY_HOME, "Home" },       { GLFW_KEY_END, "End" },
+	{ GLFW_KEY_PAGE_UP, "Page Up" }, { GLFW_KEY_PAGE_DOWN, "Page Down" },
 };
 
 static void print_key_name(const struct gz_window_action *action, char name[KEY_NAME_SIZE])
@@ -226,6 +237,35 @@ void gz_window_print_key(const struct gz_window_action *action, char *text, size
 	print_key_name(action, name);
 	snprintf(text, size, "%s%s%s", name[0] && action->modifiers & GZ_KEY_CONTROL ? "Ctrl+" : "",
 		 name[0] && action->modifiers & GZ_KEY_SHIFT ? "Shift+" : "", name);
+}
+
+/* A letter's key goes by the user's layout, others by their code. */
+static void print_idle_key(const struct gz_window_idle_key *idle, char *text, size_t size)
+{
+	const struct gz_window_action as_action = {
+		.key = idle->key,
+		.letter = idle->letter,
+		.modifiers = idle->modifiers,
+	};
+	gz_window_print_key(&as_action, text, size);
+}
+
+void gz_window_tell_idle_key(struct gz_window *window)
+{
+	struct gz_window_idle_key *idle = &window->idle_key;
+	const int64_t now_ns = gz_clock_now_ns(), told_ns = window->keys->idle_told_ns;
+	char text[2 * KEY_NAME_SIZE] = "";
+	if (idle->noted)
+		print_idle_key(idle, text, sizeof text);
+	idle->noted = false;
+	if (!text[0] || (told_ns > 0 && now_ns < told_ns + IDLE_KEY_QUIET_NS))
+		return;
+	window->keys->idle_told_ns = now_ns;
+	if (idle->other)
+		gz_info(window->log, "%s, %s: not possible at present; H lists the keys", text,
+			idle->other->name);
+	else
+		gz_info(window->log, "%s does nothing here; H lists the keys", text);
 }
 
 static void toggle_keys(struct gz_window *window, int number)

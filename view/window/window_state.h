@@ -38,6 +38,15 @@ struct gz_window_context {
 	bool display_lost; /**< it must not be used any more: glfw.h */
 };
 
+/** A key that ran nothing. */
+struct gz_window_idle_key {
+	int key; /**< of GLFW */
+	char letter;
+	int modifiers;
+	const struct gz_window_action *other; /**< runs by it at other times; NULL: none */
+	bool noted;                           /**< there is one, and it has not been told */
+};
+
 /** The window of gz_view_window(). */
 struct gz_window {
 	const struct gz_view_options *options;
@@ -118,6 +127,7 @@ struct gz_window {
 
 	int64_t key_ns; /**< when the last key was pressed */
 	bool key_taken; /**< that key did something: its character is ignored */
+	struct gz_window_idle_key idle_key;
 	const struct gz_window_part *grabber; /**< has the mouse; NULL: none */
 	int grab_button;
 	double grab_moved; /**< way of the mouse since then, screen coordinates */
@@ -284,6 +294,10 @@ void gz_window_type_into_search(struct gz_window *window, unsigned codepoint);
 
 /** Run an action, if it applies. */
 void gz_window_run_action(struct gz_window *window, const struct gz_window_action *action);
+
+/** Say that window->idle_key, if one is noted, does nothing and where keys are listed; not again
+ * while that is still shown. */
+void gz_window_tell_idle_key(struct gz_window *window);
 
 /** Print the key of an action, such as "Ctrl+Shift+S"; nothing if it has none. */
 void gz_window_print_key(const struct gz_window_action *action, char *text, size_t size);
