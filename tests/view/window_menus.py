@@ -81,6 +81,26 @@ class Menus(WindowCase):
         self.find("exit")
         self.press_last("Return")
 
+    def test_stored_views_are_grey_while_they_are_empty(self):
+        self.start_own_scene()
+        self.tool("windowsize", self.window, 700, 400)
+        self.move(600, 350)
+        self.press("shift+F2")
+        self.click(100, 9)
+        self.move(130, 122)  # Stored views
+        self.until_idle()
+        self.move(375, 122 + 17 * 5)
+
+        def brightest(picture, row):
+            return max(min(picture.at(x, y)) for x in range(366, 452)
+                       for y in range(115 + 17 * row, 129 + 17 * row))
+
+        self.until(lambda p: [brightest(p, row) > 200 for row in range(8)] ==
+                   [False, True] + 6 * [False], "one view")
+        self.click(375, 122 + 17 * 5)  # does nothing
+        self.viewer.terminate()
+        self.assertNotIn("no view stored", self.messages())
+
     def test_everyday_words_find_something(self):
         self.start()
         for word in ("screenshot", "undo", "light", "colour", "shading", "clip", "background", "reset",

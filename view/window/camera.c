@@ -90,6 +90,11 @@ static void show_view(struct gz_window *window, int number)
 		gz_saved_view_parse(text, changed_camera(window));
 }
 
+static const char *lacks_view(const struct gz_window *window, int number)
+{
+	return window->settings.view.saved[number][0] ? NULL : "empty";
+}
+
 static bool is_orthographic(const struct gz_window *window, int number)
 {
 	(void)number;
@@ -109,14 +114,15 @@ static bool is_orthographic(const struct gz_window *window, int number)
 		.run = look_along                                                             \
 	}
 
-#define VIEW(which, with, text, where, function)                                        \
+#define VIEW(which, with, text, where, fails, function)                                 \
 	{                                                                               \
 		.key = GLFW_KEY_F##which, .modifiers = (with), .number = (which)-1,     \
 		.name = (text), .menu = GZ_MENU_VIEW, .section = 1, .submenu = (where), \
-		.applies = has_scene, .run = (function)                                 \
+		.lacks = (fails), .applies = has_scene, .run = (function)               \
 	}
-#define SHOW_VIEW(which)  VIEW(which, 0, "View " #which, "Stored views", show_view)
-#define STORE_VIEW(which) VIEW(which, GZ_KEY_SHIFT, "As view " #which, "Store this view", save_view)
+#define SHOW_VIEW(which) VIEW(which, 0, "View " #which, "Stored views", lacks_view, show_view)
+#define STORE_VIEW(which) \
+	VIEW(which, GZ_KEY_SHIFT, "As view " #which, "Store this view", NULL, save_view)
 
 static const struct gz_window_action camera_actions[] = {
 	{ .key = GLFW_KEY_LEFT,
@@ -192,6 +198,7 @@ static const struct gz_window_action camera_actions[] = {
 	  .section = 1,
 	  .submenu = "Stored views",
 	  .words = "bookmark camera",
+	  .lacks = lacks_view,
 	  .applies = has_scene,
 	  .run = show_view },
 	SHOW_VIEW(2),

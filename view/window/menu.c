@@ -10,7 +10,7 @@
 
 #define GZ_LOG_MODULE "window"
 
-enum { SECTIONS = 4, KEY_SIZE = 48 };
+enum { SECTIONS = 4, KEY_SIZE = 48, NAME_SIZE = 64 };
 
 struct gz_window_menu_bar {
 	bool shown;
@@ -62,18 +62,20 @@ static bool enter_submenu(struct menu_drawing *drawing, const char *submenu)
 static void draw_menu_row(struct menu_drawing *drawing, const struct gz_window_action *action)
 {
 	const struct gz_window *window = drawing->window;
-	char key[KEY_SIZE];
+	char key[KEY_SIZE], name[NAME_SIZE];
+	const char *lacks = action->lacks ? action->lacks(window, action->number) : NULL;
 	if (drawing->line_due)
 		gz_menu_line();
 	drawing->line_due = false;
 	if (!enter_submenu(drawing, action->submenu))
 		return;
 	gz_window_print_key(action, key, sizeof key);
+	snprintf(name, sizeof name, lacks ? "%s (%s)" : "%s", action->name, lacks);
 	const struct gz_menu_row row = {
-		.name = action->name,
+		.name = name,
 		.keys = key,
 		.on = action->is_on && action->is_on(window, action->number),
-		.enabled = !action->applies || action->applies(window),
+		.enabled = !lacks && (!action->applies || action->applies(window)),
 	};
 	if (gz_menu_choice(&row))
 		drawing->chosen = action;

@@ -57,6 +57,9 @@ struct gz_window_action {
 	/** Whether the key is this action's at present; if not, the next action with the key is
 	 *  asked. NULL: always. */
 	bool (*applies)(const struct gz_window *window);
+	/** What it lacks at present, such as "empty", static: menus show it grey with this. Its key
+	 *  still runs it, and it says what to do. NULL, or a slot that is NULL: nothing. */
+	const char *(*lacks)(const struct gz_window *window, int number);
 	void (*run)(struct gz_window *window, int number);
 };
 
