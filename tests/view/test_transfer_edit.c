@@ -243,6 +243,42 @@ static void what_is_replaced_comes_back_and_what_is_saved_does_not_differ(void *
 	gz_transfer_edit_destroy(&edit);
 }
 
+static void assert_step_names(struct gz_transfer_edit *edit, const char *name)
+{
+	assert_string_equal(gz_transfer_edit_step_name(edit, false), name);
+	assert_null(gz_transfer_edit_step_name(edit, true));
+	assert_true(gz_transfer_edit_undo(edit));
+	assert_string_equal(gz_transfer_edit_step_name(edit, true), name);
+	assert_true(gz_transfer_edit_redo(edit));
+}
+
+static void step_is_named_by_what_it_does(void **state)
+{
+	(void)state;
+	static const struct gz_transfer one = { .count = 1, .points = { { 0, { 0, 0, 0 }, 1 } } };
+	static const double red[3] = { 1, 0, 0 }, range[2] = { -5, 7 };
+	struct gz_transfer_edit *edit = begun(&four);
+	assert_null(gz_transfer_edit_step_name(edit, false));
+	assert_null(gz_transfer_edit_step_name(edit, true));
+	gz_transfer_edit_add(edit, 0.375, 0.7);
+	assert_step_names(edit, "point added");
+	gz_transfer_edit_begin(edit);
+	gz_transfer_edit_move(edit, 2, 0.4, 0.1);
+	gz_transfer_edit_move(edit, 2, 0.4, 0.2);
+	assert_step_names(edit, "point moved");
+	gz_transfer_edit_colour(edit, 2, red);
+	assert_step_names(edit, "point coloured");
+	gz_transfer_edit_remove(edit, 2);
+	assert_step_names(edit, "point removed");
+	gz_transfer_edit_range(edit, range);
+	assert_step_names(edit, "range");
+	gz_transfer_edit_interpolate(edit, GZ_TRANSFER_QUADRATIC);
+	assert_step_names(edit, "interpolation");
+	gz_transfer_edit_replace(edit, &one);
+	assert_step_names(edit, "points replaced");
+	gz_transfer_edit_destroy(&edit);
+}
+
 static void nearest_point_is_found_within_reach(void **state)
 {
 	(void)state;
@@ -285,6 +321,7 @@ TEST_SUITE(transfer_edit)
 		cmocka_unit_test(hundred_steps_are_kept_and_a_new_one_ends_what_could_be_redone),
 		cmocka_unit_test(range_is_set_taken_away_and_refused_if_it_is_none),
 		cmocka_unit_test(what_is_replaced_comes_back_and_what_is_saved_does_not_differ),
+		cmocka_unit_test(step_is_named_by_what_it_does),
 		cmocka_unit_test(nearest_point_is_found_within_reach),
 		cmocka_unit_test(axis_of_opacity_leads_back_and_spreads_small_ones),
 	};

@@ -99,6 +99,10 @@ class TransferWindow(WindowCase):
         self.until_same(changed, "done again")
         self.tool("key", "ctrl+z")
         self.until_same(first, "taken back again")
+        self.viewer.terminate()
+        said = self.messages()
+        self.assertEqual(said.count("undone: Transfer function, point moved"), 2, said)
+        self.assertEqual(said.count("redone: Transfer function, point moved"), 1, said)
 
     def test_point_is_added_and_removed_by_the_mouse(self):
         first = self.open_editor()

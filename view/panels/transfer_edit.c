@@ -278,6 +278,43 @@ bool gz_transfer_edit_redo(struct gz_transfer_edit *edit)
 	return true;
 }
 
+/* What one step changes from one function to the next, if they have as many points. */
+static const char *name_of_change(const struct gz_transfer *before, const struct gz_transfer *after)
+{
+	size_t changed = 0, last = 0;
+	for (size_t i = 0; i < before->count; i++)
+		if (!gz_transfer_point_same(&before->points[i], &after->points[i])) {
+			changed++;
+			last = i;
+		}
+	const struct gz_transfer_point *a = &before->points[last], *b = &after->points[last];
+	if (changed > 1)
+		return "points replaced";
+	if (changed == 1)
+		return a->value == b->value && a->opacity == b->opacity ? "point coloured"
+									: "point moved";
+	return before->interpolation != after->interpolation ? "interpolation" : "range";
+}
+
+static const char *name_of_step(const struct gz_transfer *before, const struct gz_transfer *after)
+{
+	if (after->count == before->count)
+		return name_of_change(before, after);
+	if (after->count == before->count + 1)
+		return "point added";
+	return before->count == after->count + 1 ? "point removed" : "points replaced";
+}
+
+const char *gz_transfer_edit_step_name(struct gz_transfer_edit *edit, bool again)
+{
+	gz_transfer_edit_end(edit);
+	if (again ? edit->future == 0 : edit->past == 0)
+		return NULL;
+	const int other = (edit->now + (again ? 1 : SLOTS - 1)) % SLOTS;
+	return again ? name_of_step(&edit->slots[edit->now], &edit->slots[other])
+		     : name_of_step(&edit->slots[other], &edit->slots[edit->now]);
+}
+
 size_t gz_transfer_edit_nearest(const struct gz_transfer_edit *edit,
 				const struct gz_transfer_place *place, double reach)
 {

@@ -120,6 +120,10 @@ int gz_transfer_edit_steps(const struct gz_transfer_edit *edit);
 /** Whether a step can be redone. */
 bool gz_transfer_edit_can_redo(const struct gz_transfer_edit *edit);
 
+/** What the step does that the next undo takes back, or the next redo does: "point moved". Static
+ * text; NULL: there is none. A drag ends first. @param again  of the next redo */
+const char *gz_transfer_edit_step_name(struct gz_transfer_edit *edit, bool again);
+
 /** A place on a plot of the function. */
 struct gz_transfer_place {
 	double value;      /**< 0 to 1 within the function's range */

@@ -1,5 +1,6 @@
 /* The part that undoes and redoes: settings, camera, what is clipped and transfer function, in the
  * order in which they were changed; and that knows what the scene's file has. */
+#include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
@@ -105,12 +106,22 @@ void gz_window_scene_saved(struct gz_window *window)
 
 /* ---- undo and redo ---- */
 
+static void tell_step(const struct gz_window *window, bool again, const char *name)
+{
+	gz_info(window->log, "%s: %s", again ? "redone" : "undone", name);
+}
+
 /* @return whether the transfer function had such a step */
 static bool take_transfer_step(struct gz_window *window, bool again)
 {
-	const bool taken = gz_window_transfer_step(window, again);
+	char name[GZ_SETTING_STEP_SIZE];
+	const char *taken = gz_window_transfer_step(window, again);
 	window->history->transfer_steps = gz_window_transfer_steps(window);
-	return taken;
+	if (!taken)
+		return false;
+	snprintf(name, sizeof name, "Transfer function, %s", taken);
+	tell_step(window, again, name);
+	return true;
 }
 
 static void step_through_history(struct gz_window *window, int again)
@@ -127,7 +138,7 @@ static void step_through_history(struct gz_window *window, int again)
 	if (outcome == GZ_HISTORY_NOTHING)
 		gz_info(window->log, "nothing to %s", again ? "redo" : "undo");
 	if (outcome == GZ_HISTORY_SETTING) {
-		gz_info(window->log, "%s: %s", again ? "redone" : "undone", name);
+		tell_step(window, again != 0, name);
 		gz_window_take_changes(window, &before);
 	}
 	gz_window_wake_panels(window);

@@ -274,10 +274,13 @@ int gz_window_transfer_steps(const struct gz_window *window)
 	return window->transfer->edit ? gz_transfer_edit_steps(window->transfer->edit) : 0;
 }
 
-bool gz_window_transfer_step(struct gz_window *window, bool again)
+const char *gz_window_transfer_step(struct gz_window *window, bool again)
 {
 	struct gz_transfer_edit *edit = window->transfer->edit;
-	return edit && (again ? gz_transfer_edit_redo(edit) : gz_transfer_edit_undo(edit));
+	const char *name = edit ? gz_transfer_edit_step_name(edit, again) : NULL;
+	if (name)
+		(void)(again ? gz_transfer_edit_redo(edit) : gz_transfer_edit_undo(edit));
+	return name;
 }
 
 bool gz_window_transfer_changed(const struct gz_window *window)

@@ -17,8 +17,9 @@ void gz_window_transfer_saved(struct gz_window *window);
 /** How many steps of the transfer function can be undone. */
 int gz_window_transfer_steps(const struct gz_window *window);
 
-/** Undo a step of the transfer function, or redo one. @return false if there is none */
-bool gz_window_transfer_step(struct gz_window *window, bool again);
+/** Undo a step of the transfer function, or redo one. @return what the step does, static text; NULL
+ * if there is none */
+const char *gz_window_transfer_step(struct gz_window *window, bool again);
 
 /** Whether the transfer function differs from the one that was opened or saved last. */
 bool gz_window_transfer_changed(const struct gz_window *window);
