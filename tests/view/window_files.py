@@ -242,6 +242,43 @@ class Files(WindowCase):
         self.keys("ctrl+s")
         self.until_there(path, lambda text: "method = mdc" in text)
 
+    def test_options_for_one_run_are_saved_only_if_the_window_changes_them(self):
+        path = os.path.join(self.folder, "own.scene")
+        shutil.copy(SCENE, path)
+        with open(path, "a", encoding="utf-8") as scene:
+            scene.write("[view]\ngaze = 0.25,0.5\n")
+        self.start("--gaze", "mouse", "--cross", "--letters", "--method", "mdc",
+                   "--pictures", self.folder, scene=path)
+        self.move(150, 200)
+        self.until(lambda p: self.cross_at(p, 150, 200), "the cross at the mouse")
+        self.tool("key", "ctrl+F12")
+        picture = self.wait_for(lambda: glob.glob(os.path.join(self.folder, "gazeview-*.png")),
+                                "a picture")[0]
+        self.keys("ctrl+s")
+        text = self.until_there(path, lambda text: "method = mdc" in text)
+        self.assertIn("gaze = 0.25,0.5", text)
+        self.assertNotIn("gaze_cursor", text)
+        self.assertNotIn("letters", text)
+        # The run goes on as it was asked for.
+        self.move(330, 120)
+        self.until(lambda p: self.cross_at(p, 330, 120), "the cross at the mouse")
+        for key in ("m", "c", "ctrl+s"):
+            self.keys(key)
+        text = self.until_there(path, lambda text: "gaze = 0.25,0.5" not in text)
+        self.assertIn("gaze = ", text)
+        self.assertNotIn("gaze = mouse", text)
+        self.assertNotIn("gaze_cursor", text)
+        self.stop()
+        # The scene in a picture does not have them either.
+        self.start("--method", "ddc", scene=picture)
+        self.keys("ctrl+s")
+        self.until(self.dialog_there, "the dialog")
+        self.press("Return")
+        text = self.until_there(os.path.splitext(picture)[0] + ".scene",
+                                lambda text: "method = ddc" in text)
+        self.assertIn("gaze = 0.25,0.5", text)
+        self.assertNotIn("gaze_cursor", text)
+
     def test_layout_of_a_raw_volume_is_asked_for_and_confirmed(self):
         path = self.write("mystery.raw", BALL)
         self.launch(path, "--gaze", "mouse", "--method", "standard")

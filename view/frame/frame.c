@@ -48,6 +48,8 @@ struct gz_frame_maker {
 	const struct gz_log *log;
 	struct gz_scene scene;
 	char path[GZ_PATH_SIZE];           /* of the scene */
+	struct gz_view_settings own_view;  /* the scene's, without overrides */
+	bool has_own_view;                 /* there are overrides */
 	struct time_points *time_points;   /* NULL until another one is asked for */
 	uint64_t data_revision;            /* of the scene's volume */
 	struct gz_picture_maker *pictures; /* NULL: not started */
@@ -94,6 +96,7 @@ struct change {
 	const struct gz_view_options *options;
 	const struct gz_frame_scene *scene;
 	const struct gz_log *log;
+	struct gz_view_settings *own_view; /* gets the scene's, without overrides */
 };
 
 /* The spacing table and the pictures of the surroundings stay the scene's own, as their files are
@@ -129,6 +132,7 @@ static enum gz_result override_settings(void *user, struct gz_scene_settings *se
 	const struct gz_backend_params params = { .threads = options->threads,
 						  .simd = options->simd };
 	int rays[2];
+	*change->own_view = settings->view;
 	enum gz_result r = gz_techniques[0]->check(options->backend, &params, change->log);
 	if (r == GZ_OK && change->scene->by_options)
 		r = gz_view_options_apply(options, settings);
@@ -182,7 +186,8 @@ enum gz_result gz_frame_maker_create(const struct gz_view_options *options,
 	const struct gz_attention_params attention = gz_attention_default();
 	gz_attention_init(&maker->attention, &attention);
 	maker->focus = maker->attention.focus;
-	const struct change change = { options, scene, log };
+	const struct change change = { options, scene, log, &maker->own_view };
+	maker->has_own_view = scene->by_options || scene->kept;
 	enum gz_result r = open_frame_scene(&change, loading, &maker->scene);
 	if (r != GZ_OK) {
 		gz_frame_maker_destroy(&maker);
@@ -366,6 +371,11 @@ bool gz_frame_maker_started(const struct gz_frame_maker *maker)
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker)
 {
 	return &maker->scene;
+}
+
+const struct gz_view_settings *gz_frame_maker_own_view(const struct gz_frame_maker *maker)
+{
+	return maker->has_own_view ? &maker->own_view : NULL;
 }
 
 static bool is_of_values(const struct gz_looked_at *thing)

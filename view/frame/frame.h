@@ -114,6 +114,10 @@ bool gz_frame_maker_started(const struct gz_frame_maker *maker);
 /** The scene as loaded, with all overrides. Valid until the maker is destroyed. */
 const struct gz_scene *gz_frame_maker_scene(const struct gz_frame_maker *maker);
 
+/** Settings of section view as the scene has them, without those of the command line or of the
+ * scene before; NULL: there are no such. */
+const struct gz_view_settings *gz_frame_maker_own_view(const struct gz_frame_maker *maker);
+
 /** gz_scene_list_objects() for the objects that the last frame showed. */
 size_t gz_frame_list_objects(const struct gz_frame_maker *maker,
 			     struct gz_object out_objects[GZ_SCENE_LISTED_MAX]);

@@ -97,20 +97,22 @@ const struct gz_option gz_view_option_table[] = {
 	{ "turn", GZ_OPTION_DOUBLE, AT(turn_deg), -360, 360, .preset = "0",
 	  .help = "turn the camera by this angle each frame, degrees" },
 	{ "cross", GZ_OPTION_BOOL, AT(cross), .preset = "false",
-	  .help = "short for --view.gaze_cursor" },
+	  .help = "a cross at the gaze, as --view.gaze_cursor; saved scenes do not get it" },
 	{ "letters", GZ_OPTION_BOOL, AT(letters), .preset = "false",
-	  .help = "short for --view.letters" },
+	  .help = "letters of sides, as --view.letters; saved scenes do not get them" },
 	{ "fullscreen", GZ_OPTION_BOOL, AT(fullscreen), .preset = "false",
 	  .help = "start with a full-screen window" },
 	{ "menu", GZ_OPTION_BOOL, AT(menu), .preset = "true",
 	  .help = "start with a menu bar; U shows and hides it" },
-	{ "vsync", GZ_OPTION_BOOL, AT(vsync), .preset = "true", .help = "short for --view.vsync" },
+	{ "vsync", GZ_OPTION_BOOL, AT(vsync), .preset = "true",
+	  .help = "as --view.vsync; saved scenes do not get it" },
 	{ "interface-scale", GZ_OPTION_DOUBLE, AT(interface_scale), 0, 8, .preset = "0",
 	  .help = "size of text and panels; 1 is small; 0: from the display" },
 	{ "gaze-fills-window", GZ_OPTION_BOOL, AT(gaze_fills_window), .preset = "false",
 	  .help = "map the daemon's gaze to the window instead of the monitor" },
 	{ "tracker-display", GZ_OPTION_STRING, AT(tracker_display), .max = GZ_NAME_SIZE,
-	  .help = "short for --view.tracker_display: a monitor's name, or its number from 1" },
+	  .help = "the tracker's monitor, by its name or its number from 1, as "
+		  "--view.tracker_display; saved scenes do not get it" },
 	{ "display-px", GZ_OPTION_SIZE, AT(display_px), 1, 32768,
 	  .help = "size of the display, px; headless, the picture fills it" },
 	{ "display-mm", GZ_OPTION_DOUBLE, AT(display_mm), 1, 100000, .count = 2,
@@ -623,6 +625,39 @@ static void apply_short_names(const struct gz_view_options *options, struct gz_v
 	if (options->tracker_display[0])
 		memcpy(view->tracker_display, options->tracker_display,
 		       sizeof view->tracker_display);
+}
+
+unsigned gz_view_options_run(const struct gz_view_options *options,
+			     const struct gz_view_settings *view)
+{
+	unsigned which = 0;
+	if (options->gaze_text[0] && strcmp(view->gaze, options->gaze_text) == 0)
+		which |= GZ_VIEW_RUN_GAZE;
+	if (options->tracker_display[0] &&
+	    strcmp(view->tracker_display, options->tracker_display) == 0)
+		which |= GZ_VIEW_RUN_TRACKER_DISPLAY;
+	if (options->cross && view->gaze_cursor)
+		which |= GZ_VIEW_RUN_CROSS;
+	if (options->letters && view->letters)
+		which |= GZ_VIEW_RUN_LETTERS;
+	if (!options->vsync && !view->vsync)
+		which |= GZ_VIEW_RUN_VSYNC;
+	return which;
+}
+
+void gz_view_run_copy(unsigned which, const struct gz_view_settings *from,
+		      struct gz_view_settings *to)
+{
+	if (which & GZ_VIEW_RUN_GAZE)
+		memcpy(to->gaze, from->gaze, sizeof to->gaze);
+	if (which & GZ_VIEW_RUN_TRACKER_DISPLAY)
+		memcpy(to->tracker_display, from->tracker_display, sizeof to->tracker_display);
+	if (which & GZ_VIEW_RUN_CROSS)
+		to->gaze_cursor = from->gaze_cursor;
+	if (which & GZ_VIEW_RUN_LETTERS)
+		to->letters = from->letters;
+	if (which & GZ_VIEW_RUN_VSYNC)
+		to->vsync = from->vsync;
 }
 
 /* Whether the program prints something and ends. */

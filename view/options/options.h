@@ -151,6 +151,24 @@ bool gz_view_options_raw(const struct gz_view_options *options, struct gz_raw_la
 enum gz_result gz_view_options_apply(const struct gz_view_options *options,
 				     struct gz_scene_settings *settings);
 
+/** What options set in section view for one run; saved scenes do not get it. */
+enum gz_view_run {
+	GZ_VIEW_RUN_GAZE = 1,            /**< --gaze */
+	GZ_VIEW_RUN_TRACKER_DISPLAY = 2, /**< --tracker-display */
+	GZ_VIEW_RUN_CROSS = 4,           /**< --cross */
+	GZ_VIEW_RUN_LETTERS = 8,         /**< --letters */
+	GZ_VIEW_RUN_VSYNC = 16,          /**< --vsync */
+};
+
+/** Which settings of @p view are as such an option has set them. @return bits of enum gz_view_run
+ */
+unsigned gz_view_options_run(const struct gz_view_options *options,
+			     const struct gz_view_settings *view);
+
+/** Copy the settings of @p which, bits of enum gz_view_run. */
+void gz_view_run_copy(unsigned which, const struct gz_view_settings *from,
+		      struct gz_view_settings *to);
+
 /**
  * Parse --gaze: "centre", "mouse", "pointer", "daemon", "X,Y", an endpoint (ipc://, tcp://) or the
  * name of a .gzl file.

@@ -195,6 +195,7 @@ static void add_captured_scene(const struct gz_window *window,
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
 	job->has_scene = true;
 	memcpy(&job->settings, settings, sizeof job->settings);
+	gz_window_drop_run_settings(window, &job->settings.view);
 	memcpy(&job->transfer, &scene->transfer, sizeof job->transfer);
 	job->volume = &scene->volume;
 	snprintf(job->scene_path, sizeof job->scene_path, "%s", gz_window_scene_path(window));

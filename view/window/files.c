@@ -36,6 +36,9 @@ struct gz_window_files {
 	bool made;                        /* the scene has no transfer function of its own … */
 	struct gz_transfer made_transfer; /* … and was given this one */
 	char made_for[GZ_PATH_SIZE];      /* path of that scene */
+	bool has_run;                     /* the scene is shown with options for this run … */
+	struct gz_view_settings own_view; /* … in place of some of these, which its file has */
+	struct gz_scene_settings to_save; /* as shown, without those options */
 	/* A log whose last error is also shown in a dialog. */
 	struct gz_log log;
 	const struct gz_log *outer;
@@ -207,14 +210,36 @@ static enum gz_result attach_drop_callback(struct gz_window *window)
 
 /* ---- saving ---- */
 
+void gz_window_drop_run_settings(const struct gz_window *window, struct gz_view_settings *view)
+{
+	const struct gz_window_files *state = window->files;
+	if (state->has_run)
+		gz_view_run_copy(gz_view_options_run(window->options, view), &state->own_view,
+				 view);
+}
+
 static struct gz_scene_save scene_to_save(const struct gz_window *window)
 {
+	struct gz_window_files *state = window->files;
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	state->to_save = window->settings;
+	gz_window_drop_run_settings(window, &state->to_save.view);
 	return (struct gz_scene_save) {
-		.scene = { &window->settings, scene->has_display, gz_window_scene_path(window) },
+		.scene = { &state->to_save, scene->has_display, gz_window_scene_path(window) },
 		.transfer = &scene->transfer,
 		.made = window->files->made ? &window->files->made_transfer : NULL,
 	};
+}
+
+/* The file has these now. What options set for this run goes on. */
+static void take_saved_settings(struct gz_window *window, const struct gz_scene_settings *saved)
+{
+	struct gz_window_files *state = window->files;
+	const struct gz_view_settings run = window->settings.view;
+	const unsigned which = state->has_run ? gz_view_options_run(window->options, &run) : 0;
+	state->own_view = saved->view;
+	window->settings = *saved;
+	gz_view_run_copy(which, &run, &window->settings.view);
 }
 
 static enum gz_result save_scene_to(struct gz_window *window, const char *path)
@@ -222,9 +247,10 @@ static enum gz_result save_scene_to(struct gz_window *window, const char *path)
 	const struct gz_scene_save save = scene_to_save(window);
 	struct gz_window_files *state = window->files;
 	state->last[0] = '\0';
-	const enum gz_result r = gz_scene_save(&save, path, &state->log, &window->settings);
+	const enum gz_result r = gz_scene_save(&save, path, &state->log, &state->to_save);
 	if (r != GZ_OK)
 		return r;
+	take_saved_settings(window, &state->to_save);
 	gz_info(window->log, "saved as %s", path);
 	if (strcmp(state->made_for, gz_window_scene_path(window)) == 0)
 		snprintf(state->made_for, sizeof state->made_for, "%s", path);
@@ -339,6 +365,10 @@ static void note_scene_shown(struct gz_window *window)
 	struct gz_window_files *state = window->files;
 	const char *path = gz_window_scene_path(window);
 	const struct gz_scene *scene = gz_frame_maker_scene(window->maker);
+	const struct gz_view_settings *own = gz_frame_maker_own_view(window->maker);
+	state->has_run = own != NULL;
+	if (own)
+		state->own_view = *own;
 	/* A scene that is shown again, as after a failed loading, may have been edited. */
 	if (strcmp(path, state->made_for) != 0 || path[0] == '\0' ||
 	    strcmp(path, state->opening) == 0) {

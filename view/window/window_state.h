@@ -278,6 +278,10 @@ const struct gz_recent *gz_window_recent(const struct gz_window *window);
 /** Save the scene, or ask for its name. */
 void gz_window_save_scene(struct gz_window *window);
 
+/** Replace what options of the command line set for this run only, and nobody has changed since, by
+ * what the scene's file has: for settings that are about to be saved. */
+void gz_window_drop_run_settings(const struct gz_window *window, struct gz_view_settings *view);
+
 /** Whether the name of the scene is being asked for. */
 bool gz_window_is_saving(const struct gz_window *window);
 
