@@ -221,6 +221,34 @@ function(gz_cast_flags file set)
 	set_source_files_properties(${file} PROPERTIES COMPILE_OPTIONS "${flags}")
 endfunction()
 
+# gz_kernels(TARGET file... DEFINES NAME [PUBLIC] [CHOOSES]): add kernels of this folder to TARGET, each
+# file compiled for the instruction set that its name ends in (_avx2.c, _avx512.c; any other: portable). The
+# processor chooses at run time. Where it may have AVX, NAME is defined; elsewhere only portable files
+# are added. PUBLIC: NAME is defined for those who use TARGET, too. CHOOSES: loops with a choice become
+# SIMD, because no one asks which comparison met NaN; values stay the same.
+function(gz_kernels target)
+	cmake_parse_arguments(K "PUBLIC;CHOOSES" "DEFINES" "" ${ARGN})
+	set(scope PRIVATE)
+	if(K_PUBLIC)
+		set(scope PUBLIC)
+	endif()
+	foreach(file ${K_UNPARSED_ARGUMENTS})
+		if(file MATCHES "_(avx[0-9]+)\\.c$")
+			if(NOT GAZECAST_X86)
+				continue()
+			endif()
+			gz_cast_flags(${file} ${CMAKE_MATCH_1})
+			target_compile_definitions(${target} ${scope} ${K_DEFINES})
+		else()
+			gz_cast_flags(${file} portable)
+		endif()
+		target_sources(${target} PRIVATE ${file})
+		if(K_CHOOSES)
+			set_property(SOURCE ${file} APPEND PROPERTY COMPILE_OPTIONS -fno-trapping-math)
+		endif()
+	endforeach()
+endfunction()
+
 # gz_system_directory(NAME PACKAGE VARIABLE FOLDER TEXT): the setting NAME, a folder of the system. Under /usr it
 # is what pkg-config knows as VARIABLE of PACKAGE, because distributions differ; otherwise FOLDER.
 function(gz_system_directory name package variable folder text)
