@@ -359,20 +359,22 @@ static const int64_t ASK_CALM_NS = 6 * GZ_NS_PER_MS;
 /* Label sample @p index by what a forest makes of the newest features; without them as the sample
  * before. */
 static void label_by_forest(struct gz_classify_state *state, const struct gz_forest *forest,
-			    struct gz_forest_memory *memory, const float *features, uint64_t index)
+			    struct gz_classify_forest *memory, const float *features,
+			    uint64_t index)
 {
 	int32_t scores[GZ_FOREST_CLASSES];
 	struct gz_classify_entry *entry = gz_classify_at(state, index);
 	const struct gz_forest_lists *lists = gz_forest_lists_of(forest);
 	if (entry->valid && !features) {
-		entry->learned = memory->last;
+		entry->learned = memory->labels.last;
 		return;
 	}
 	if (entry->valid && lists)
-		gz_forest_lists_score(lists, features, scores);
+		gz_forest_lists_score(lists, &memory->walks, features, scores);
 	else if (entry->valid)
 		gz_forest_score(forest, features, scores);
-	entry->learned = gz_forest_label(memory, entry->valid ? scores : NULL, entry->still_scene);
+	entry->learned =
+		gz_forest_label(&memory->labels, entry->valid ? scores : NULL, entry->still_scene);
 }
 
 /* Whether the label of sample @p index cannot be that of the sample before. */
@@ -410,12 +412,12 @@ static void ask_forests(struct gz_classify_state *state, const struct gz_classif
 	}
 	if (!gz_movement_step(&state->movement, display, &measured, asked))
 		return;
-	label_by_forest(state, &gz_forest_at_once, &state->at_once_memory, asked, newest);
+	label_by_forest(state, &gz_forest_at_once, &state->at_once_forest, asked, newest);
 	enum gz_forest_class now = gz_classify_at(state, newest)->learned;
 	if (now != GZ_FOREST_FIXATION && now != GZ_FOREST_PURSUIT)
 		state->lively_ns = input->time_ns;
 	if (certain)
-		label_by_forest(state, &gz_forest_certain, &state->certain_memory, asked_certain,
+		label_by_forest(state, &gz_forest_certain, &state->certain_forest, asked_certain,
 				newest - delay);
 }
 

@@ -30,7 +30,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "filter/classifier/forest.h"
+#include "filter/classifier/forest_lists.h"
 #include "filter/classifier/movement.h"
 #include "filter/median.h"
 #include "protocol/display.h"
@@ -145,6 +145,12 @@ struct gz_classify_quick {
 	int64_t since_ns;
 };
 
+/** What a forest found out about the samples before. */
+struct gz_classify_forest {
+	struct gz_forest_memory labels;
+	struct gz_forest_walks walks;
+};
+
 /** State of this step. Zero-initialised is the start state: lost, no sample yet. Plain data. */
 struct gz_classify_state {
 	struct gz_classify_entry ring[GZ_CLASSIFY_RING];
@@ -165,7 +171,7 @@ struct gz_classify_state {
 	struct gz_classify_slow slow;
 	/* Used if the labels are learned: */
 	struct gz_movement movement;
-	struct gz_forest_memory at_once_memory, certain_memory;
+	struct gz_classify_forest at_once_forest, certain_forest;
 	/* When the forests were asked last; set once a sample is there. */
 	int64_t asked_ns, asked_certain_ns;
 	int64_t lively_ns; /**< newest sample that was no slow movement */

@@ -5,177 +5,119 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A question whose unusual answer excludes leaves of a tree. */
+/* A question of a tree. */
 struct list_entry {
 	float threshold;
-	uint32_t kept; /* the leaves that it does not exclude */
-	uint32_t tree;
+	uint16_t tree;
+	uint16_t number; /* among the questions of the tree */
 };
 
-/* Each feature has two lists: questions that exclude if the feature is not below the threshold, the
- * least threshold first; and those that exclude if it is below, the greatest first. An entry that
- * no feature passes ends each list. */
-enum { EXCLUDES_BELOW, EXCLUDES_ABOVE, KINDS };
-
-/* Room for the classes side by side, so that they are added at once: a power of two. */
-enum { CLASS_ROOM = 8 };
-
-/* The scores of a leaf; 0 beyond the classes that the forest knows. */
-struct leaf_scores {
-	int16_t of[CLASS_ROOM];
+/* A leaf. What a walk needs of it lies together. */
+struct list_leaf {
+	int16_t score[6]; /* of each class; 0 beyond those that the forest knows */
+	uint32_t asked;   /* questions on the way to it, bits */
 };
 
-typedef int16_t class_scores __attribute__((vector_size(sizeof(struct leaf_scores))));
-typedef int32_t class_sums __attribute__((vector_size(sizeof(int32_t) * CLASS_ROOM)));
+_Static_assert(GZ_FOREST_CLASSES <= 6, "a leaf has room for all classes");
 
+/* The questions about each feature are a list, the least threshold first. It begins with an entry
+ * that every feature passes, and ends with one that none does. */
 struct gz_forest_lists {
-	size_t tree_count;
-	int32_t base[CLASS_ROOM];
-	uint32_t first[GZ_MOVEMENT_FEATURES][KINDS]; /* of each list, in entries */
+	const struct gz_forest *forest;
+	uint16_t first[GZ_MOVEMENT_FEATURES]; /* behind the entry that every feature passes */
 	struct list_entry *entries;
-	struct leaf_scores *leaves; /* GZ_FOREST_LIST_LEAVES for each tree, in the order in which
-				       they are excluded */
+	struct list_leaf *leaves; /* GZ_FOREST_LIST_LEAVES for each tree */
 };
 
-/* What the features usually are: the medians over the simulated viewer at 500 Hz. Only the speed
- * depends on them. */
-/* clang-format off */
-static const float usual_features[GZ_MOVEMENT_FEATURES] = {
-	31.75F, 31.7F, 31.68F, 31.66F, 31.64F, 31.58F, 31.56F, 31.55F, 0.0F, 0.0F, 0.0F, 0.0F,
-	0.0F, 0.1316F, 0.257F, 0.5006F, 0.07247F, 0.6855F, 0.0F, 0.1445F, 0.5178F, 0.2777F,
-	0.08984F, 0.5505F, 0.0F, 0.1715F, 1.045F, 0.1672F, 0.1028F, 0.4714F, 0.0F, 0.2435F,
-	2.119F, 0.1201F, 0.1149F, 0.4814F, 0.0F, 0.8937F, 4.389F, 0.2152F, 0.2622F, 1.281F, 0.0F,
-	3.269F, 10.8F, 0.3269F, 1.123F, 3.292F, 0.0F, 5.51F, 20.14F, 0.2841F, 2.231F, 4.177F,
-	0.0F, 0.078F, 0.0063F, 0.0872F, 0.0114F, 0.1592F, 0.0371F, 1.857F, 0.2007F, -0.539F,
-	-0.4569F, -0.2403F, 0.05386F, 0.2821F, 0.4892F, 30.47F, 176.0F, 1000.0F, 102.0F, 447.0F,
-	20.0F, 6.503F, 0.07012F, -0.3932F, 186.0F, 0.8633F, 0.09794F, 136.0F, 0.05747F, 0.8333F,
-	0.4333F, 0.0F, 210.0F, 0.02639F, 2.711F, 2.687F, 0.03204F, 2.576F, 2.974F, -3.0F, -3.0F,
-	1.0F, 0.8469F, 1.203F, 0.0F, 0.2538F, 0.07477F,
-};
-/* clang-format on */
+/* A place of 16 bits is enough. */
+_Static_assert(GZ_FOREST_LIST_LEAVES *GZ_FOREST_LIST_TREES + 2 * GZ_MOVEMENT_FEATURES < UINT16_MAX,
+	       "every entry has a place");
 
 static bool is_leaf(const struct gz_forest_node *root, uint8_t at)
 {
 	return root[at].next[0] == at;
 }
 
-/* Which leaves the question excludes by its unusual answer: those of the side of the usual one. */
-static int kind_of(const struct gz_forest_node *node)
-{
-	return usual_features[node->feature] < node->threshold ? EXCLUDES_BELOW : EXCLUDES_ABOVE;
-}
-
-/* An entry and its list: feature and kind. */
+/* An entry and the feature in whose list it is. */
 struct unsorted_entry {
 	struct list_entry entry;
-	int list;
+	uint8_t feature;
 };
 
-/* One tree being put into lists. */
+/* A forest being put into lists. */
 struct list_maker {
 	struct gz_forest_lists *lists;
 	const struct gz_forest *forest;
-	uint32_t tree;
-	uint32_t leaf_count; /* so far, in the order in which they are excluded */
-	uint32_t entry_count;
 	struct unsorted_entry *entries; /* of all trees */
+	size_t entry_count;
 };
 
-/* A subtree in front of which a walk is, and how far it has come there. */
-struct list_step {
+static void take_list_leaf(struct list_maker *maker, size_t tree, uint8_t leaf, uint32_t asked)
+{
+	const size_t classes = (size_t)maker->forest->class_count;
+	const int16_t *scores =
+		maker->forest->leaf + (maker->forest->tree[tree].leaf + leaf) * classes;
+	struct list_leaf *to = &maker->lists->leaves[tree * GZ_FOREST_LIST_LEAVES + leaf];
+	memcpy(to->score, scores, classes * sizeof scores[0]);
+	to->asked = asked;
+}
+
+/* A node that a walk has not visited yet, and the questions on the way to it. */
+struct open_node {
 	uint8_t at;
-	uint8_t done; /* sides */
-	uint32_t first_leaf;
+	uint32_t asked;
 };
 
-static void take_list_leaf(struct list_maker *maker, const struct gz_forest_tree *tree,
-			   const struct gz_forest_node *leaf)
+/* Put a tree into the lists. @return false: it is too large */
+static bool take_list_tree(struct list_maker *maker, size_t tree)
 {
-	size_t to = maker->tree * (size_t)GZ_FOREST_LIST_LEAVES + maker->leaf_count++;
-	size_t classes = (size_t)maker->forest->class_count;
-	const int16_t *scores = maker->forest->leaf + (tree->leaf + leaf->leaf) * classes;
-	memcpy(maker->lists->leaves[to].of, scores, classes * sizeof scores[0]);
-}
-
-/* Bits @p first to @p end - 1. */
-static uint32_t bits_between(uint32_t first, uint32_t end)
-{
-	uint64_t below_end = (UINT64_C(1) << end) - 1, below_first = (UINT64_C(1) << first) - 1;
-	return (uint32_t)(below_end & ~below_first);
-}
-
-static void take_list_question(struct list_maker *maker, const struct gz_forest_node *node,
-			       uint32_t first_leaf)
-{
-	maker->entries[maker->entry_count++] = (struct unsorted_entry) {
-		.entry = { .threshold = node->threshold,
-			   .kept = ~bits_between(first_leaf, maker->leaf_count),
-			   .tree = maker->tree },
-		.list = node->feature * KINDS + kind_of(node),
-	};
-}
-
-/* Put a tree into the lists. The side that a question can exclude comes first, so that the first
- * leaf that is left is the one that a walk finds: each question on the way to a later leaf that is
- * left would have excluded the way to an earlier one. */
-static bool take_list_tree(struct list_maker *maker)
-{
-	const struct gz_forest_tree *tree = &maker->forest->tree[maker->tree];
-	const struct gz_forest_node *root = maker->forest->node + tree->node;
-	struct list_step steps[GZ_FOREST_LIST_LEAVES] = { { .at = 0 } };
-	size_t depth = 1;
-	maker->leaf_count = 0;
-	while (depth > 0) {
-		struct list_step *step = &steps[depth - 1];
-		const struct gz_forest_node *node = &root[step->at];
-		if (is_leaf(root, step->at)) {
-			if (maker->leaf_count == GZ_FOREST_LIST_LEAVES)
-				return false;
-			take_list_leaf(maker, tree, node);
-			depth--;
+	const struct gz_forest_node *root = maker->forest->node + maker->forest->tree[tree].node;
+	struct open_node open[GZ_FOREST_LIST_LEAVES + 1] = { { .at = 0 } };
+	size_t open_count = 1;
+	uint16_t questions = 0;
+	while (open_count > 0) {
+		const struct open_node here = open[--open_count];
+		const struct gz_forest_node *node = &root[here.at];
+		if (is_leaf(root, here.at) && node->leaf < GZ_FOREST_LIST_LEAVES) {
+			take_list_leaf(maker, tree, node->leaf, here.asked);
 			continue;
 		}
-		if (step->done == 1)
-			take_list_question(maker, node, step->first_leaf);
-		if (step->done == 2) {
-			depth--;
-			continue;
-		}
-		if (depth == GZ_FOREST_LIST_LEAVES)
+		/* A tree has one question less than leaves, and each open node has a leaf. */
+		if (is_leaf(root, here.at) || questions == GZ_FOREST_LIST_LEAVES - 1)
 			return false;
-		int side = kind_of(node) == EXCLUDES_BELOW ? step->done : 1 - step->done;
-		step->done++;
-		steps[depth++] = (struct list_step) { .at = node->next[side],
-						      .first_leaf = maker->leaf_count };
+		const uint32_t asked = here.asked | UINT32_C(1) << questions;
+		maker->entries[maker->entry_count++] =
+			(struct unsorted_entry) { { node->threshold, (uint16_t)tree, questions++ },
+						  node->feature };
+		open[open_count++] = (struct open_node) { node->next[0], asked };
+		open[open_count++] = (struct open_node) { node->next[1], asked };
 	}
 	return true;
 }
 
-/* By list, and within it in the order in which it is read. */
+/* By feature, and within it by threshold. */
 static int compare_unsorted(const void *a, const void *b)
 {
 	const struct unsorted_entry *x = a, *y = b;
-	float first = x->entry.threshold, second = y->entry.threshold;
-	int rising = (first > second) - (first < second);
-	if (x->list != y->list)
-		return x->list < y->list ? -1 : 1;
-	return x->list % KINDS == EXCLUDES_BELOW ? rising : -rising;
+	const float first = x->entry.threshold, second = y->entry.threshold;
+	if (x->feature != y->feature)
+		return x->feature < y->feature ? -1 : 1;
+	return (first > second) - (first < second);
 }
 
 /* Put the entries into their lists, in order. */
 static void sort_lists(struct list_maker *maker)
 {
 	struct gz_forest_lists *lists = maker->lists;
-	uint32_t next = 0, end = 0;
-	qsort(maker->entries, maker->entry_count, sizeof maker->entries[0], compare_unsorted);
-	for (int list = 0; list < GZ_MOVEMENT_FEATURES * KINDS; list++) {
-		int kind = list % KINDS;
-		lists->first[list / KINDS][kind] = end;
-		for (; next < maker->entry_count && maker->entries[next].list == list; next++)
-			lists->entries[end++] = maker->entries[next].entry;
-		lists->entries[end++] =
-			(struct list_entry) { .threshold = kind == EXCLUDES_BELOW ? INFINITY
-										  : -INFINITY };
+	struct unsorted_entry *entries = maker->entries;
+	size_t next = 0, end = 0;
+	qsort(entries, maker->entry_count, sizeof entries[0], compare_unsorted);
+	for (int f = 0; f < GZ_MOVEMENT_FEATURES; f++) {
+		lists->entries[end++].threshold = -INFINITY;
+		lists->first[f] = (uint16_t)end;
+		for (; next < maker->entry_count && entries[next].feature == f; next++)
+			lists->entries[end++] = entries[next].entry;
+		lists->entries[end++].threshold = INFINITY;
 	}
 }
 
@@ -188,7 +130,7 @@ static void free_lists(struct gz_forest_lists *lists)
 	free(lists);
 }
 
-/* @return NULL: no memory, or a tree with too many leaves */
+/* @return NULL: no memory, or the forest is too large */
 static struct gz_forest_lists *make_lists(const struct gz_forest *forest)
 {
 	const size_t trees = forest->tree_count, most = trees * GZ_FOREST_LIST_LEAVES;
@@ -198,16 +140,13 @@ static struct gz_forest_lists *make_lists(const struct gz_forest *forest)
 		free_lists(lists);
 		return NULL;
 	}
-	lists->tree_count = trees;
-	for (int k = 0; k < GZ_FOREST_CLASSES; k++)
-		lists->base[k] = k < forest->class_count ? forest->base[k] : GZ_FOREST_NEVER;
-	lists->entries =
-		calloc(most + (size_t)GZ_MOVEMENT_FEATURES * KINDS, sizeof *lists->entries);
-	lists->leaves = calloc(trees * GZ_FOREST_LIST_LEAVES, sizeof *lists->leaves);
+	lists->forest = forest;
+	lists->entries = calloc(most + 2 * (size_t)GZ_MOVEMENT_FEATURES, sizeof *lists->entries);
+	lists->leaves = calloc(most, sizeof *lists->leaves);
 	maker.entries = calloc(most, sizeof *maker.entries);
 	bool made = lists->entries && lists->leaves && maker.entries;
-	for (; made && maker.tree < trees; maker.tree++)
-		made = take_list_tree(&maker);
+	for (size_t tree = 0; made && tree < trees; tree++)
+		made = take_list_tree(&maker, tree);
 	if (made)
 		sort_lists(&maker);
 	free(maker.entries);
@@ -233,35 +172,122 @@ const struct gz_forest_lists *gz_forest_lists_of(const struct gz_forest *forest)
 	return lists;
 }
 
-/* Exclude leaves by all questions with unusual answers. @param left  of each tree, all bits set */
-static void exclude_leaves(const struct gz_forest_lists *lists,
-			   const float features[GZ_MOVEMENT_FEATURES], uint32_t *left)
+/* Trees that must be walked again. */
+struct stale_trees {
+	size_t count;
+	uint16_t tree[GZ_FOREST_LIST_TREES];
+};
+
+/* The answer to a question changes. */
+static inline void change_answer(struct gz_forest_walks *walks, const struct list_entry *entry,
+				 struct stale_trees *stale)
 {
-	for (int f = 0; f < GZ_MOVEMENT_FEATURES; f++) {
-		const float value = features[f];
-		const struct list_entry *entry = &lists->entries[lists->first[f][EXCLUDES_BELOW]];
-		for (; value >= entry->threshold; entry++)
-			left[entry->tree] &= entry->kept;
-		entry = &lists->entries[lists->first[f][EXCLUDES_ABOVE]];
-		for (; value < entry->threshold; entry++)
-			left[entry->tree] &= entry->kept;
-	}
+	uint32_t *asked = &walks->asked[entry->tree];
+	if ((*asked >> entry->number & 1) == 0)
+		return;
+	*asked = 0; /* it is in the list once */
+	stale->tree[stale->count++] = entry->tree;
 }
 
-void gz_forest_lists_score(const struct gz_forest_lists *lists,
+/* Move a feature past thresholds. */
+static void move_feature(const struct gz_forest_lists *lists, struct gz_forest_walks *walks,
+			 size_t feature, float value, struct stale_trees *stale)
+{
+	const struct list_entry *entry = &lists->entries[walks->place[feature]];
+	for (; value >= entry->threshold; entry++)
+		change_answer(walks, entry, stale);
+	for (; value < entry[-1].threshold; entry--)
+		change_answer(walks, entry - 1, stale);
+	walks->place[feature] = (uint16_t)(entry - lists->entries);
+	walks->low[feature] = entry[-1].threshold;
+	walks->high[feature] = entry->threshold;
+}
+
+/* The scores of the first classes side by side, so that they are added at once. */
+typedef int16_t four_scores __attribute__((vector_size(8)));
+typedef int32_t four_sums __attribute__((vector_size(16)));
+
+static inline four_sums first_scores(const struct list_leaf *leaf)
+{
+	four_scores scores;
+	memcpy(&scores, leaf->score, sizeof scores);
+	return __builtin_convertvector(scores, four_sums);
+}
+
+/* The leaf that the newest walk of a tree found. */
+static inline const struct list_leaf *found_leaf(const struct gz_forest_lists *lists,
+						 const struct gz_forest_walks *walks, size_t tree)
+{
+	return &lists->leaves[tree * GZ_FOREST_LIST_LEAVES + walks->leaf[tree]];
+}
+
+/* Walk a tree from its root. @return the leaf */
+static inline const struct list_leaf *walk_tree(const struct gz_forest_lists *lists,
+						struct gz_forest_walks *walks, size_t tree,
+						const float *features)
+{
+	const struct gz_forest *forest = lists->forest;
+	const struct gz_forest_node *root = forest->node + forest->tree[tree].node;
+	const struct gz_forest_node *node = root, *before;
+	do {
+		before = node;
+		node = root + node->next[features[node->feature] >= node->threshold];
+	} while (node != before);
+	walks->leaf[tree] = node->leaf;
+	const struct list_leaf *leaf = found_leaf(lists, walks, tree);
+	walks->asked[tree] = leaf->asked;
+	return leaf;
+}
+
+/* Walk trees again, and change the scores by what changes in them. */
+static void walk_stale_trees(const struct gz_forest_lists *lists, struct gz_forest_walks *walks,
+			     const struct stale_trees *stale, const float *features)
+{
+	four_sums sums;
+	memcpy(&sums, walks->scores, sizeof sums);
+	for (size_t i = 0; i < stale->count; i++) {
+		const struct list_leaf *before = found_leaf(lists, walks, stale->tree[i]);
+		const struct list_leaf *now = walk_tree(lists, walks, stale->tree[i], features);
+		sums += first_scores(now) - first_scores(before);
+		walks->scores[4] += now->score[4] - before->score[4];
+	}
+	memcpy(walks->scores, &sums, sizeof sums);
+}
+
+_Static_assert(GZ_FOREST_CLASSES == 5, "walk_stale_trees() knows all classes");
+
+/* Walk all trees. */
+static void begin_walks(const struct gz_forest_lists *lists, struct gz_forest_walks *walks,
+			const float *features)
+{
+	const struct gz_forest *forest = lists->forest;
+	struct stale_trees none = { .count = 0 };
+	memset(walks, 0, sizeof *walks);
+	for (size_t f = 0; f < GZ_MOVEMENT_FEATURES; f++) {
+		walks->place[f] = lists->first[f];
+		move_feature(lists, walks, f, features[f], &none);
+	}
+	for (int k = 0; k < GZ_FOREST_CLASSES; k++)
+		walks->scores[k] = k < forest->class_count ? forest->base[k] : GZ_FOREST_NEVER;
+	for (size_t tree = 0; tree < forest->tree_count; tree++) {
+		const struct list_leaf *leaf = walk_tree(lists, walks, tree, features);
+		for (int k = 0; k < GZ_FOREST_CLASSES; k++)
+			walks->scores[k] += leaf->score[k];
+	}
+	walks->begun = true;
+}
+
+void gz_forest_lists_score(const struct gz_forest_lists *lists, struct gz_forest_walks *walks,
 			   const float features[GZ_MOVEMENT_FEATURES],
 			   int32_t out_scores[GZ_FOREST_CLASSES])
 {
-	uint32_t left[GZ_FOREST_LIST_TREES];
-	class_sums sums;
-	const struct leaf_scores *leaves = lists->leaves;
-	memset(left, 0xff, lists->tree_count * sizeof left[0]);
-	exclude_leaves(lists, features, left);
-	memcpy(&sums, lists->base, sizeof sums);
-	for (size_t t = 0; t < lists->tree_count; t++, leaves += GZ_FOREST_LIST_LEAVES) {
-		class_scores scores;
-		memcpy(&scores, &leaves[__builtin_ctz(left[t])], sizeof scores);
-		sums += __builtin_convertvector(scores, class_sums);
-	}
-	memcpy(out_scores, &sums, GZ_FOREST_CLASSES * sizeof out_scores[0]);
+	struct stale_trees stale;
+	stale.count = 0;
+	if (!walks->begun)
+		begin_walks(lists, walks, features);
+	for (size_t f = 0; f < GZ_MOVEMENT_FEATURES; f++)
+		if (features[f] < walks->low[f] || features[f] >= walks->high[f])
+			move_feature(lists, walks, f, features[f], &stale);
+	walk_stale_trees(lists, walks, &stale, features);
+	memcpy(out_scores, walks->scores, sizeof walks->scores);
 }

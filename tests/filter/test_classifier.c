@@ -306,6 +306,7 @@ static void lists_of_questions_give_the_scores_of_the_trees(void **state)
 	enum { SAMPLES = 3000 };
 	static const struct gz_forest *const forests[] = { &gz_forest_at_once, &gz_forest_certain };
 	static struct feed feed;
+	static struct gz_forest_walks walks[2];
 	struct gz_random random = gz_random_seeded(3, 3);
 	feed_open(&feed, 500);
 	for (int k = 0; k < SAMPLES; k++) {
@@ -326,7 +327,7 @@ static void lists_of_questions_give_the_scores_of_the_trees(void **state)
 			const struct gz_forest_lists *lists = gz_forest_lists_of(forest);
 			assert_non_null(lists);
 			gz_forest_score(forest, features, by_trees);
-			gz_forest_lists_score(lists, features, by_lists);
+			gz_forest_lists_score(lists, &walks[i], features, by_lists);
 			assert_memory_equal(by_lists, by_trees, sizeof by_trees);
 		}
 	}
