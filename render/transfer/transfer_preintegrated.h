@@ -49,14 +49,16 @@ void gz_transfer_sums_make(const struct gz_transfer_table *table,
 			   struct gz_transfer_sums *out_sums);
 
 /**
- * The table of segments of @p length voxel lengths.
+ * The tables of segments of @p count lengths, voxel lengths. Together they take less time than one
+ * by one.
  *
- * @param workers           share the rows; NULL for the calling thread alone. The result has the
- * same bits for any number
- * @param[out] out_entries  GZ_PREINTEGRATED_ENTRIES entries, with opacity
+ * @param workers          share the rows; NULL for the calling thread alone. The result has the
+ * same bits for any number and on any processor
+ * @param[out] out_tables  for each length GZ_PREINTEGRATED_ENTRIES entries, with opacity
  */
-void gz_transfer_preintegrate(const struct gz_transfer_sums *sums, double length,
-			      struct gz_workers *workers, struct gz_transfer_entry *out_entries);
+void gz_transfer_preintegrate(const struct gz_transfer_sums *sums, const double lengths[],
+			      int count, struct gz_workers *workers,
+			      struct gz_transfer_entry *const out_tables[]);
 
 /**
  * The table for segments of any length, used for the rest of a step at the end of a ray: the mean

@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "oracle.h"
 #include "render/plan/method.h"
+#include "render/transfer/segment_kernels.h"
 #include "render/transfer/transfer_preintegrated.h"
 #include "small_scene.h"
 
@@ -42,6 +43,13 @@ static struct tables *make_tables(void)
 	tables->entries = calloc(GZ_PREINTEGRATED_ENTRIES, sizeof *tables->entries);
 	assert_non_null(tables->entries);
 	return tables;
+}
+
+/* Fill the entries of a table of one length. */
+static void integrate(const struct tables *from, double length, struct gz_workers *workers,
+		      struct tables *out_tables)
+{
+	gz_transfer_preintegrate(&from->sums, &length, 1, workers, &out_tables->entries);
 }
 
 static void free_tables(struct tables *tables)
@@ -96,7 +104,7 @@ static void tables_equal_fine_integration_between_two_values(void **state)
 	gz_transfer_sums_make(&tables->table, &tables->sums);
 	static const double lengths[] = { 1.0 / 32, 2.0 / 3, 4 };
 	for (int i = 0; i < 3; i++) {
-		gz_transfer_preintegrate(&tables->sums, lengths[i], NULL, tables->entries);
+		integrate(tables, lengths[i], NULL, tables);
 		for (int front = 3; front < SIZE; front += 61)
 			for (int back = 11; back < SIZE; back += 57)
 				if (front != back)
@@ -113,7 +121,7 @@ static void segment_within_a_cell_has_its_mean(void **state)
 	struct tables *tables = make_tables();
 	gz_transfer_table_bake(&scene.transfer, &scene.volume, &tables->table);
 	gz_transfer_sums_make(&tables->table, &tables->sums);
-	gz_transfer_preintegrate(&tables->sums, 2, NULL, tables->entries);
+	integrate(tables, 2, NULL, tables);
 	for (int cell = 0; cell < SIZE; cell++) {
 		double mean = 0;
 		for (int i = 0; i < STRIDE; i++)
@@ -136,7 +144,7 @@ static void spike_one_entry_wide_is_exact_for_every_segment_over_it(void **state
 	tables->table.entries[SPIKE].extinction = (float)log2(1 - 0.9);
 	tables->table.entries[SPIKE].colour = 2047U << 21;
 	gz_transfer_sums_make(&tables->table, &tables->sums);
-	gz_transfer_preintegrate(&tables->sums, 1.5, NULL, tables->entries);
+	integrate(tables, 1.5, NULL, tables);
 	int over = 0;
 	for (int front = 0; front < SIZE; front++)
 		for (int back = front % 5; back < SIZE; back += 5) {
@@ -165,7 +173,7 @@ static void opaque_spike_lets_nothing_through(void **state)
 	struct tables *tables = make_tables();
 	tables->table.entries[2000].extinction = -INFINITY;
 	gz_transfer_sums_make(&tables->table, &tables->sums);
-	gz_transfer_preintegrate(&tables->sums, 1.0 / 32, NULL, tables->entries);
+	integrate(tables, 1.0 / 32, NULL, tables);
 	assert_true(tables->entries[SIZE - 1].opacity == 1);
 	assert_true(tables->entries[(SIZE - 1) * SIZE].opacity == 1);
 	assert_true(tables->entries[10 * SIZE + 100].opacity == 0);
@@ -181,7 +189,7 @@ static void front_colour_hides_the_back_one(void **state)
 		tables->table.entries[i].colour = i < 2048 ? 2047U << 21 : 1023;
 	}
 	gz_transfer_sums_make(&tables->table, &tables->sums);
-	gz_transfer_preintegrate(&tables->sums, 4, NULL, tables->entries);
+	integrate(tables, 4, NULL, tables);
 	assert_true(red(tables->entries[SIZE - 1].colour) > 2000);
 	assert_true(red(tables->entries[(SIZE - 1) * SIZE].colour) < 47);
 	free_tables(tables);
@@ -197,15 +205,83 @@ static void tables_are_the_same_bits_for_any_number_of_workers(void **state)
 	gz_transfer_table_bake(&scene.transfer, &scene.volume, &alone->table);
 	gz_transfer_sums_make(&alone->table, &alone->sums);
 	const int64_t start_ns = gz_clock_now_ns();
-	gz_transfer_preintegrate(&alone->sums, 1.5, NULL, alone->entries);
+	integrate(alone, 1.5, NULL, alone);
 	print_message("a table of one step length: %.2f ms on one core\n",
 		      gz_ns_to_ms(gz_clock_now_ns() - start_ns));
-	gz_transfer_preintegrate(&alone->sums, 1.5, workers, shared->entries);
+	integrate(alone, 1.5, workers, shared);
 	assert_memory_equal(alone->entries, shared->entries,
 			    GZ_PREINTEGRATED_ENTRIES * sizeof *alone->entries);
 	gz_workers_destroy(&workers);
 	free_tables(alone);
 	free_tables(shared);
+	small_scene_free(&scene);
+}
+
+static void tables_of_several_lengths_are_those_of_each(void **state)
+{
+	(void)state;
+	static const double lengths[] = { 0.5, 2, 3.25 };
+	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U8);
+	struct tables *tables[4];
+	struct gz_transfer_entry *entries[3];
+	for (int i = 0; i < 4; i++)
+		tables[i] = make_tables();
+	for (int i = 0; i < 3; i++)
+		entries[i] = tables[i]->entries;
+	gz_transfer_table_bake(&scene.transfer, &scene.volume, &tables[0]->table);
+	gz_transfer_sums_make(&tables[0]->table, &tables[0]->sums);
+	gz_transfer_preintegrate(&tables[0]->sums, lengths, 3, NULL, entries);
+	for (int i = 0; i < 3; i++) {
+		integrate(tables[0], lengths[i], NULL, tables[3]);
+		assert_memory_equal(entries[i], tables[3]->entries,
+				    GZ_PREINTEGRATED_ENTRIES * sizeof *entries[i]);
+	}
+	for (int i = 0; i < 4; i++)
+		free_tables(tables[i]);
+	small_scene_free(&scene);
+}
+
+/* The rows of two sets of kernels, by their bits. */
+static void check_segment_kernels(const struct gz_segment_kernels *one,
+				  const struct gz_segment_kernels *other,
+				  const struct gz_transfer_sums *sums)
+{
+	static struct gz_segment_means means[2];
+	static struct gz_transfer_entry rising[2][SIZE], falling[2][SIZE], mixed[2][SIZE];
+	const struct gz_segment_kernels *const of[2] = { one, other };
+	for (int low = 0; low < SIZE; low += 37) {
+		const int count = SIZE - 1 - low;
+		for (int i = 0; i < 2; i++) {
+			of[i]->average(sums, low, count, &means[i]);
+			of[i]->blend(&means[i], count, 0.7F, rising[i], falling[i]);
+			of[i]->segment_in_cell(sums, low, 0.7F, &rising[i][count]);
+			of[i]->mix(sums, low, count, mixed[i]);
+			of[i]->mix_in_cell(sums, low, &mixed[i][count]);
+		}
+		const size_t bytes = (size_t)count * sizeof rising[0][0];
+		assert_memory_equal(rising[0], rising[1], bytes + sizeof rising[0][0]);
+		assert_memory_equal(falling[0], falling[1], bytes);
+		assert_memory_equal(mixed[0], mixed[1], bytes + sizeof mixed[0][0]);
+	}
+}
+
+static void tables_are_the_same_bits_by_all_instruction_sets(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U8);
+	struct tables *tables = make_tables();
+	scene.transfer.points[1].opacity = 1;
+	gz_transfer_table_bake(&scene.transfer, &scene.volume, &tables->table);
+	gz_transfer_sums_make(&tables->table, &tables->sums);
+	const struct gz_segment_kernels *portable = gz_segment_kernels_find(sets[0]);
+	assert_non_null(portable);
+	assert_null(gz_segment_kernels_find("sse9"));
+	for (size_t i = 1; i < sizeof sets / sizeof sets[0]; i++) {
+		const struct gz_segment_kernels *kernels = gz_segment_kernels_find(sets[i]);
+		if (kernels)
+			check_segment_kernels(portable, kernels, &tables->sums);
+	}
+	free_tables(tables);
 	small_scene_free(&scene);
 }
 
@@ -510,6 +586,8 @@ TEST_SUITE(preintegrated)
 		cmocka_unit_test(opaque_spike_lets_nothing_through),
 		cmocka_unit_test(front_colour_hides_the_back_one),
 		cmocka_unit_test(tables_are_the_same_bits_for_any_number_of_workers),
+		cmocka_unit_test(tables_of_several_lengths_are_those_of_each),
+		cmocka_unit_test(tables_are_the_same_bits_by_all_instruction_sets),
 		cmocka_unit_test(cast_of_every_type_equals_the_oracle),
 		cmocka_unit_test(
 			cast_by_nearest_voxel_inside_and_of_flat_volumes_equals_the_oracle),

@@ -37,15 +37,22 @@ enum gz_result gz_preintegration_make(struct gz_preintegration *preintegration,
 {
 	enum gz_result result =
 		preintegration->summed ? GZ_OK : sum_transfer(preintegration, table, workers);
+	double missing[GZ_PLAN_STEPS_MAX];
+	struct gz_transfer_entry *tables[GZ_PLAN_STEPS_MAX];
+	int missing_count = 0;
 	for (int i = 0; i < count && result == GZ_OK; i++) {
 		if (preintegration->length[i] == lengths[i])
 			continue;
 		if (!allocate_entries(&preintegration->step[i]))
-			return GZ_ERR_NO_MEM;
-		gz_transfer_preintegrate(preintegration->sums, lengths[i], workers,
-					 preintegration->step[i]);
-		preintegration->length[i] = lengths[i];
+			result = GZ_ERR_NO_MEM;
+		preintegration->length[i] = result == GZ_OK ? lengths[i] : 0;
+		tables[missing_count] = preintegration->step[i];
+		missing[missing_count] = lengths[i];
+		missing_count += result == GZ_OK;
 	}
+	if (missing_count > 0)
+		gz_transfer_preintegrate(preintegration->sums, missing, missing_count, workers,
+					 tables);
 	return result;
 }
 
