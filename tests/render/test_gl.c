@@ -327,6 +327,27 @@ static void jittered_pictures_of_a_shifted_plan_equal_the_cpus(void **state)
 	small_scene_free(&scene);
 }
 
+static void both_fade_values_under_light(void **state)
+{
+	static const double shares[] = { 0, 0.3, 0.7, 1, 0.5, 0 };
+	(void)state;
+	struct small_scene scene = small_scene_waves(30, 30, 30, GZ_VOXEL_U8);
+	scene.rays.shading = GZ_SHADING_GRADIENT;
+	scene.rays.light.occlusion = 0.9;
+	scene.rays.light.occlusion_radius = 6;
+	scene.rays.light.shadow_steps = 4;
+	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+	struct pair pair = pair_of(&scene);
+	for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
+		scene.transfer.emphasis = (struct gz_transfer_emphasis) { shares[i], 0.5, 0.7 };
+		assert_int_equal(gz_raycaster_set_transfer(pair.cpu, &scene.transfer), GZ_OK);
+		assert_int_equal(gz_raycaster_set_transfer(pair.gl, &scene.transfer), GZ_OK);
+		check_pair(&pair, &scene, 90, 90, "fade");
+	}
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
 static void new_transfer_function_and_volume_replace_the_old(void **state)
 {
 	(void)state;
@@ -656,6 +677,7 @@ TEST_SUITE(gl)
 		cmocka_unit_test(pictures_from_inside_and_orthographic_equal_the_cpus),
 		cmocka_unit_test(pictures_of_any_size_equal_the_cpus),
 		cmocka_unit_test(jittered_pictures_of_a_shifted_plan_equal_the_cpus),
+		cmocka_unit_test(both_fade_values_under_light),
 		cmocka_unit_test(new_transfer_function_and_volume_replace_the_old),
 		cmocka_unit_test(picture_left_on_the_device_equals_the_one_read_back),
 		cmocka_unit_test(picture_without_an_image_is_refused_by_the_cpu),

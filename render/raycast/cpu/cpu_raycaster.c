@@ -11,8 +11,8 @@
 #include "render/contrast/contrast.h"
 #include "render/light/cube_pictures.h"
 #include "render/raycast/cpu/cast.h"
+#include "render/raycast/cpu/faded_light.h"
 #include "render/raycast/cpu/fine_cells.h"
-#include "render/raycast/cpu/light_grid.h"
 #include "render/raycast/cpu/volume_shade.h"
 #include "render/raycast/shared/brick_stream.h"
 #include "render/raycast/shared/detail.h"
@@ -100,8 +100,7 @@ struct cpu_raycaster {
 	double step_length[GZ_PLAN_STEPS_MAX];
 	struct gz_transfer_entry *step_tables;
 	struct gz_preintegration preintegration;
-	struct gz_lighting lighting;
-	struct gz_light_grid light_grid;
+	struct gz_faded_light light;
 	struct gz_cube_pictures pictures; /* of the surroundings, if they are wanted */
 	struct gz_volume_shade shade;     /* on others in the picture */
 	struct gz_lattices lattices;
@@ -151,8 +150,7 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	gz_detail_free(&cpu->detail);
 	free_fine_cells(cpu);
 	gz_brick_stream_free(&cpu->stream);
-	gz_lighting_free(&cpu->lighting);
-	gz_light_grid_free(&cpu->light_grid);
+	gz_faded_light_free(&cpu->light);
 	gz_cube_pictures_free(&cpu->pictures);
 	gz_lattices_free(&cpu->lattices);
 	gz_contrasts_free(&cpu->contrasts);
@@ -219,6 +217,7 @@ static enum gz_result cpu_set_volume(struct gz_raycaster *raycaster, const struc
 	struct cpu_raycaster *cpu = cpu_of(raycaster);
 	cpu->volume = NULL;
 	cpu->has_transfer = false;
+	gz_faded_light_forget(&cpu->light);
 	gz_brick_stream_forget(&cpu->stream);
 	/* Gathers take signed indices of 32 bits. */
 	if (!volume->bricks && gz_volume_voxel_count(volume) > INT32_MAX) {
@@ -260,21 +259,29 @@ static void make_levels(struct cpu_raycaster *cpu)
 			classify_fine_cells(cpu, i);
 }
 
+/* Find what shows something by the present table. */
+static void classify_cells(struct cpu_raycaster *cpu)
+{
+	gz_detail_classify(&cpu->detail, cpu->table);
+	for (int i = 0; i < cpu->detail.levels.count; i++)
+		classify_fine_cells(cpu, i);
+	gz_brick_stream_forget(&cpu->stream);
+}
+
 static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
 				       const struct gz_transfer *transfer)
 {
 	struct cpu_raycaster *cpu = cpu_of(raycaster);
 	if (!cpu->volume)
 		return GZ_ERR_INVAL;
+	const int entries = cpu->has_transfer ? cpu->table->count : 0;
+	const bool same_but_emphasis = gz_faded_light_set_transfer(&cpu->light, transfer);
 	gz_transfer_table_bake(transfer, cpu->volume, cpu->table);
-	gz_detail_classify(&cpu->detail, cpu->table);
-	for (int i = 0; i < cpu->detail.levels.count; i++)
-		classify_fine_cells(cpu, i);
-	gz_brick_stream_forget(&cpu->stream);
+	/* What shows something does so with any emphasis, in the same entries. */
+	if (!same_but_emphasis || entries != cpu->table->count)
+		classify_cells(cpu);
 	memset(cpu->step_length, 0, sizeof cpu->step_length);
 	gz_preintegration_forget(&cpu->preintegration);
-	gz_lighting_forget(&cpu->lighting);
-	gz_light_grid_forget(&cpu->light_grid);
 	cpu->has_transfer = true;
 	return GZ_OK;
 }
@@ -545,8 +552,8 @@ static enum gz_result fill_casts(struct cpu_raycaster *cpu, const struct gz_came
 		fill_cast_volume(cpu, i, &rays->clip, &job->casts[i]);
 		fill_cast_fine_cells(&cpu->fine[i], &job->casts[i]);
 		fill_cast_rays(cpu, i, ray_frame, &job->casts[i]);
-		gz_lighting_fill(&cpu->lighting, cpu->detail.levels.level[i].factor, rays,
-				 ray_frame, &job->casts[i].light);
+		gz_lighting_fill(&cpu->light.shown.lighting, cpu->detail.levels.level[i].factor,
+				 rays, ray_frame, &job->casts[i].light);
 	}
 	return GZ_OK;
 }
@@ -583,7 +590,6 @@ static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_sho
 		return GZ_OK;
 	/* What coarser levels show, and segments from end to end, may lie where no voxel does. */
 	const struct gz_light_grid_request request = {
-		.lighting = &cpu->lighting,
 		.arriving = cpu->kernels->arriving,
 		.rays = rays,
 		.ray_frame = ray_frame,
@@ -595,8 +601,8 @@ static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_sho
 		.workers = cpu->workers,
 		.log = cpu->base.log,
 	};
-	struct gz_light_grid *grid = &cpu->light_grid;
-	const enum gz_result result = gz_light_grid_make(&request, grid);
+	const struct gz_light_grid *grid = &cpu->light.shown.light_grid;
+	const enum gz_result result = gz_faded_light_make_grid(&cpu->light, &request);
 	if (result != GZ_OK)
 		return result;
 	for (int i = 0; i < job->cast_count; i++)
@@ -629,11 +635,11 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	result = gz_cube_pictures_prepare(&cpu->pictures, &rays->environment, raycaster->log,
 					  &prepare_ms);
 	if (result == GZ_OK)
-		result = gz_lighting_prepare(&cpu->lighting, cpu->volume, cpu->table, rays,
-					     cpu->workers, raycaster->log);
+		result = gz_faded_light_prepare(&cpu->light, cpu->volume, cpu->table, rays,
+						cpu->workers, raycaster->log);
 	if (result != GZ_OK)
 		return result;
-	prepare_ms += gz_lighting_take_spent_ms(&cpu->lighting);
+	prepare_ms += gz_lighting_take_spent_ms(&cpu->light.shown.lighting);
 	const int64_t start_ns = gz_clock_now_ns();
 	const bool nearest = gz_ray_samples_nearest(rays, cpu->volume);
 	const bool rich = gz_ray_params_lit(rays) || shot->depths ||
@@ -694,12 +700,12 @@ static enum gz_result cpu_shade(struct gz_raycaster *raycaster, const struct gz_
 	enum gz_result result = gz_camera_rays(shot->camera, shot->plan->view.width,
 					       shot->plan->view.height, &ray_frame);
 	if (result == GZ_OK)
-		result = gz_lighting_prepare(&cpu->lighting, cpu->volume, cpu->table, rays,
-					     cpu->workers, raycaster->log);
-	return result == GZ_OK
-		       ? gz_volume_shade_make(&cpu->lighting, cpu->kernels->arriving, rays,
-					      &ray_frame, raycaster->log, &cpu->shade, out_shade)
-		       : result;
+		result = gz_faded_light_prepare(&cpu->light, cpu->volume, cpu->table, rays,
+						cpu->workers, raycaster->log);
+	return result == GZ_OK ? gz_volume_shade_make(&cpu->light.shown.lighting,
+						      cpu->kernels->arriving, rays, &ray_frame,
+						      raycaster->log, &cpu->shade, out_shade)
+			       : result;
 }
 
 static bool cpu_refines(const struct gz_raycaster *raycaster)

@@ -86,6 +86,7 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 {
 	scene->volume = NULL;
 	scene->has_transfer = false;
+	gz_faded_light_forget(&scene->light);
 	free_levels(scene);
 	const enum gz_result whole = volume->bricks
 					     ? GZ_ERR_UNSUPPORTED
@@ -116,6 +117,15 @@ enum gz_result gz_gl_scene_set_volume(struct gz_gl_scene *scene, const struct gz
 	return result;
 }
 
+/* Find what shows something by the present table. */
+static void classify_cells(struct gz_gl_scene *scene)
+{
+	gz_detail_classify(&scene->detail, scene->table);
+	for (int i = 0; i < scene->level_count; i++)
+		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
+	gz_gl_bricks_forget(&scene->bricks);
+}
+
 enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
 					const struct gz_transfer *transfer)
 {
@@ -123,15 +133,14 @@ enum gz_result gz_gl_scene_set_transfer(struct gz_gl_scene *scene,
 		scene->table = calloc(1, sizeof *scene->table);
 	if (!scene->table)
 		return GZ_ERR_NO_MEM;
+	const int entries = scene->has_transfer ? scene->table->count : 0;
+	const bool same_but_emphasis = gz_faded_light_set_transfer(&scene->light, transfer);
 	gz_transfer_table_bake(transfer, scene->volume, scene->table);
-	gz_detail_classify(&scene->detail, scene->table);
-	for (int i = 0; i < scene->level_count; i++)
-		gz_gl_volume_classify(&scene->levels[i], &scene->detail.cells[i]);
+	/* What shows something does so with any emphasis, in the same entries. */
+	if (!same_but_emphasis || entries != scene->table->count)
+		classify_cells(scene);
 	gz_preintegration_forget(&scene->preintegration);
-	gz_lighting_forget(&scene->lighting);
-	gz_light_grid_forget(&scene->light_grid);
 	gz_gl_tables_forget(&scene->tables);
-	gz_gl_bricks_forget(&scene->bricks);
 	scene->has_transfer = true;
 	return GZ_OK;
 }
@@ -201,7 +210,6 @@ static enum gz_result prepare_shadows(struct gz_gl_scene *scene, const struct gz
 {
 	const struct gz_ray_params *rays = frame->rays;
 	const struct gz_light_grid_request request = {
-		.lighting = &scene->lighting,
 		.arriving = gz_cast_kernels_find(NULL)->arriving,
 		.rays = rays,
 		.ray_frame = frame->world,
@@ -215,8 +223,8 @@ static enum gz_result prepare_shadows(struct gz_gl_scene *scene, const struct gz
 		.workers = gz_gl_scene_workers(scene),
 		.log = log,
 	};
-	struct gz_light_grid *grid = &scene->light_grid;
-	enum gz_result result = gz_light_grid_make(&request, grid);
+	const struct gz_light_grid *grid = &scene->light.shown.light_grid;
+	enum gz_result result = gz_faded_light_make_grid(&scene->light, &request);
 	if (result != GZ_OK || scene->arriving_serial == grid->serial)
 		return result;
 	result = load_grid(&scene->arriving, device, grid->dims, grid->cells, log);
@@ -229,9 +237,10 @@ static enum gz_result prepare_light(struct gz_gl_scene *scene, const struct gz_g
 				    const struct gz_gl_frame *frame, bool coarser,
 				    const struct gz_log *log)
 {
-	const struct gz_lighting *lighting = &scene->lighting;
-	enum gz_result result = gz_lighting_prepare(&scene->lighting, scene->volume, scene->table,
-						    frame->rays, gz_gl_scene_workers(scene), log);
+	const struct gz_lighting *lighting = &scene->light.shown.lighting;
+	enum gz_result result =
+		gz_faded_light_prepare(&scene->light, scene->volume, scene->table, frame->rays,
+				       gz_gl_scene_workers(scene), log);
 	if (result == GZ_OK && lighting->current && scene->occlusion_serial != lighting->serial) {
 		result = load_grid(&scene->occlusion, device, lighting->occlusion.dims,
 				   lighting->occlusion.cells, log);
@@ -258,10 +267,9 @@ enum gz_result gz_gl_scene_shade(struct gz_gl_scene *scene, const struct gz_ray_
 				 const struct gz_ray_frame *world, const struct gz_log *log,
 				 struct gz_shade *out_shade)
 {
-	const enum gz_result result =
-		gz_lighting_prepare(&scene->lighting, scene->volume, scene->table, rays,
-				    gz_gl_scene_workers(scene), log);
-	return result == GZ_OK ? gz_volume_shade_make(&scene->lighting,
+	const enum gz_result result = gz_faded_light_prepare(
+		&scene->light, scene->volume, scene->table, rays, gz_gl_scene_workers(scene), log);
+	return result == GZ_OK ? gz_volume_shade_make(&scene->light.shown.lighting,
 						      gz_cast_kernels_find(NULL)->arriving, rays,
 						      world, log, &scene->shade, out_shade)
 			       : result;
@@ -352,7 +360,7 @@ enum gz_result gz_gl_scene_prepare(struct gz_gl_scene *scene, const struct gz_gl
 		choose_levels(scene, plan, frame->rays, pixel_lengths, out_levels);
 	}
 	enum gz_result result = prepare_light(scene, device, frame, coarser, log);
-	scene->prepare_ms = gz_lighting_take_spent_ms(&scene->lighting);
+	scene->prepare_ms = gz_lighting_take_spent_ms(&scene->light.shown.lighting);
 	if (result == GZ_OK)
 		result = prepare_pictures(scene, device, frame->rays, log);
 	if (result == GZ_OK)
@@ -430,9 +438,9 @@ static void fill_block_light(const struct gz_gl_scene *scene, const int factor[3
 			     const struct gz_ray_frame *world, const struct gz_ray_params *rays,
 			     struct gz_gl_cast_block *block)
 {
-	const struct gz_light_grid *grid = &scene->light_grid;
+	const struct gz_light_grid *grid = &scene->light.shown.light_grid;
 	struct gz_cast_light light;
-	gz_lighting_fill(&scene->lighting, factor, rays, world, &light);
+	gz_lighting_fill(&scene->light.shown.lighting, factor, rays, world, &light);
 	if (rays->light.shadow_steps > 0)
 		gz_cast_cells_fill(grid->cells, grid->dims, grid->edge, factor,
 				   &light.shadow.arriving);
@@ -508,9 +516,8 @@ void gz_gl_scene_forget(struct gz_gl_scene *scene)
 	gz_gl_bricks_abandon(&scene->bricks);
 	gz_detail_free(&scene->detail);
 	gz_preintegration_free(&scene->preintegration);
-	gz_lighting_free(&scene->lighting);
+	gz_faded_light_free(&scene->light);
 	gz_cube_pictures_free(&scene->pictures);
-	gz_light_grid_free(&scene->light_grid);
 	gz_workers_destroy(&scene->workers);
 	free(scene->table);
 	*scene = (struct gz_gl_scene) { 0 };

@@ -13,7 +13,7 @@
 #include "render/light/cube_pictures.h"
 #include "render/light/gl/gl_cube.h"
 #include "render/picture/camera.h"
-#include "render/raycast/cpu/light_grid.h"
+#include "render/raycast/cpu/faded_light.h"
 #include "render/raycast/cpu/volume_shade.h"
 #include "render/raycast/gl/gl_bricks.h"
 #include "render/raycast/gl/gl_cast.h"
@@ -44,14 +44,13 @@ struct gz_gl_scene {
 	bool bricked; /**< the volume is shown by these bricks: */
 	struct gz_gl_bricks bricks;
 	struct gz_gl_tables tables;
-	struct gz_lighting lighting;
+	/** Made by the processor; shadows by the kernels of the cpu backend. */
+	struct gz_faded_light light;
 	struct gz_cube_pictures pictures; /**< of the surroundings, if they are wanted */
 	struct gz_gl_cube cube;
 	struct gz_gl_grid occlusion;
-	uint64_t occlusion_serial; /**< of the grid in the texture */
-	/** Of shadows. The processor makes it, by the kernels of the cpu backend. */
-	struct gz_light_grid light_grid;
-	struct gz_gl_grid arriving;
+	uint64_t occlusion_serial;    /**< of the grid in the texture */
+	struct gz_gl_grid arriving;   /**< the grid of shadows */
 	uint64_t arriving_serial;     /**< of the grid in the texture */
 	struct gz_volume_shade shade; /**< on others in the picture */
 	double prepare_ms;            /**< that the last frame spent on what later frames reuse */

@@ -15,7 +15,7 @@ void gz_lighting_forget(struct gz_lighting *lighting)
 	lighting->shadows_current = false;
 }
 
-static bool wants_occlusion(const struct gz_ray_params *rays)
+bool gz_lighting_wants_occlusion(const struct gz_ray_params *rays)
 {
 	return rays->shading == GZ_SHADING_GRADIENT && rays->light.occlusion > 0 &&
 	       rays->light.ambient > 0;
@@ -72,6 +72,7 @@ static enum gz_result prepare_shadows(struct gz_lighting *lighting,
 	}
 	lighting->shadow_clip = rays->clip;
 	lighting->shadows_current = true;
+	lighting->shadow_serial++;
 	return GZ_OK;
 }
 
@@ -83,7 +84,7 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 	enum gz_result result = GZ_OK;
 	lighting->volume = volume;
 	lighting->table = table;
-	if (wants_occlusion(rays))
+	if (gz_lighting_wants_occlusion(rays))
 		result = prepare_occlusion(lighting, rays, workers, log);
 	if (result == GZ_OK && rays->light.shadow_steps > 0)
 		result = prepare_shadows(lighting, rays, workers, log);
@@ -188,7 +189,7 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		out_light->towards[axis] = (float)towards[axis];
 		out_light->gradient_scale[axis] = (float)(scale[axis] / factor[axis]);
 	}
-	if (wants_occlusion(rays))
+	if (gz_lighting_wants_occlusion(rays))
 		gz_cast_cells_fill(lighting->occlusion.cells, lighting->occlusion.dims,
 				   lighting->occlusion.edge, factor, &out_light->occluded);
 	if (light->shadow_steps > 0) {

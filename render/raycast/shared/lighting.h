@@ -67,12 +67,16 @@ struct gz_lighting {
 	double radius;
 	struct gz_clip_region clip;
 	struct gz_shadow_cells shadows;
+	uint64_t shadow_serial; /**< increased whenever shadows are made */
 	bool shadows_current; /**< shadows are for the present transfer function and shadow_clip */
 	struct gz_clip_region shadow_clip;
 	double spent_ms;                /**< making both, until gz_lighting_take_spent_ms() */
 	const struct gz_volume *volume; /**< of gz_lighting_prepare(), borrowed */
 	const struct gz_transfer_table *table; /**< of gz_lighting_prepare(), borrowed */
 };
+
+/** Whether frames take the grid of occlusion. */
+bool gz_lighting_wants_occlusion(const struct gz_ray_params *rays);
 
 /** The volume or the transfer function has changed; memory is kept. */
 void gz_lighting_forget(struct gz_lighting *lighting);
