@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
+
 static const char *const level_names[] = { "debug", "info", "warn", "error" };
 
 /* Size of a message, with its NUL; longer ones are cut. Chosen: a path and a sentence. */
@@ -73,6 +75,7 @@ void gz_log_write(const struct gz_log *log, enum gz_log_level level, const char 
 	va_start(arguments, format);
 	vsnprintf(message, sizeof message, format, arguments);
 	va_end(arguments);
+	gz_utf8_clean(message);
 	log->sink(log->user, level, module, message);
 }
 

@@ -66,7 +66,9 @@ void gz_log_to_stderr(void *user, enum gz_log_level level, const char *module, c
 /** Whether @p log passes on a message of this level and module. False for NULL. */
 bool gz_log_wants(const struct gz_log *log, enum gz_log_level level, const char *module);
 
-/** Format a message and pass it on. Use the macros below, which check the level first. */
+/** Format a message and pass it on. Control characters and bytes that are not UTF-8 become '?':
+ * names and contents of files may hold commands for a terminal. Use the macros below, which check
+ * the level first. */
 __attribute__((format(printf, 4, 5))) void gz_log_write(const struct gz_log *log,
 							enum gz_log_level level, const char *module,
 							const char *format, ...);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "base/utf8.h"
 
 static const char truncated[] = "\"truncated\":true";
 
@@ -34,39 +35,18 @@ static void add_json_text(struct json_text *json, const char *text)
 	append_json_bytes(json, text, strlen(text));
 }
 
-/* The length of the UTF-8 sequence at @p bytes (RFC 3629), 0 if it is none. */
-static size_t utf8_length(const unsigned char *bytes, size_t left)
-{
-	unsigned char first = bytes[0];
-	size_t length = first < 0x80                     ? 1
-			: first >= 0xc2 && first <= 0xdf ? 2
-			: (first & 0xf0) == 0xe0         ? 3
-			: first >= 0xf0 && first <= 0xf4 ? 4
-							 : 0;
-	if (length == 0 || length > left)
-		return 0;
-	for (size_t i = 1; i < length; i++) {
-		if ((bytes[i] & 0xc0) != 0x80)
-			return 0;
-	}
-	if ((first == 0xe0 && bytes[1] < 0xa0) || (first == 0xed && bytes[1] > 0x9f) ||
-	    (first == 0xf0 && bytes[1] < 0x90) || (first == 0xf4 && bytes[1] > 0x8f))
-		return 0;
-	return length;
-}
-
 static void add_json_string(struct json_text *json, const msgpack_object_str *string)
 {
-	const unsigned char *bytes = (const unsigned char *)string->ptr;
+	const char *bytes = string->ptr;
 	char escape[8];
 	add_json_text(json, "\"");
 	for (size_t i = 0; i < string->size && !json->full;) {
-		size_t length = utf8_length(bytes + i, string->size - i);
+		size_t length = gz_utf8_length(bytes + i, string->size - i);
 		if (length == 0)
 			add_json_text(json, "?");
 		else if (bytes[i] == '"' || bytes[i] == '\\')
-			append_json_bytes(json, (char[]) { '\\', (char)bytes[i] }, 2);
-		else if (bytes[i] < ' ')
+			append_json_bytes(json, (char[]) { '\\', bytes[i] }, 2);
+		else if ((unsigned char)bytes[i] < ' ')
 			append_json_bytes(
 				json, escape,
 				(size_t)snprintf(escape, sizeof escape, "\\u%04x", bytes[i]));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 
 static void append_bytes(struct gz_pack *pack, const char *bytes, size_t size)
 {
@@ -44,31 +45,6 @@ enum gz_result gz_pack_end(struct gz_pack *pack)
 	return GZ_ERR_FULL;
 }
 
-/* Length of the UTF-8 character beyond ASCII at @p text, bytes; 0 if it is not one. RFC 3629,
- * section 4. */
-static size_t utf8_character_length(const unsigned char *text)
-{
-	unsigned char lead = text[0];
-	size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-	unsigned char low = 0x80, high = 0xbf; /* allowed in the second byte */
-	if (lead < 0xc2 || lead > 0xf4)
-		return 0;
-	if (lead == 0xe0)
-		low = 0xa0;
-	else if (lead == 0xed)
-		high = 0x9f;
-	else if (lead == 0xf0)
-		low = 0x90;
-	else if (lead == 0xf4)
-		high = 0x8f;
-	if (text[1] < low || text[1] > high)
-		return 0;
-	for (size_t i = 2; i < length; i++)
-		if ((text[i] & 0xc0) != 0x80)
-			return 0;
-	return length;
-}
-
 void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 {
 	size_t left = strlen(text), good = 0;
@@ -78,8 +54,7 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 			good++;
 			continue;
 		}
-		/* The final NUL is no continuation byte, so this never reads past it. */
-		size_t length = utf8_character_length((const unsigned char *)text + good);
+		size_t length = gz_utf8_length(text + good, left - good);
 		if (length > 0) {
 			good += length;
 			continue;

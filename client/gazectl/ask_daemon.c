@@ -1,11 +1,11 @@
 /* How the commands ask the daemon: control socket, stream, requests, status. */
 #include "client/gazectl/gazectl.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 
 #define GZ_LOG_MODULE "gazectl"
 
@@ -94,28 +94,21 @@ enum gazectl_exit gazectl_request(struct gz_control *control, const char *reques
 		       gz_control_endpoint(control), gz_result_text(result));
 		return GAZECTL_FAILED;
 	}
-	gazectl_make_printable(out_reply);
+	gz_utf8_clean(out_reply);
 	if (strncmp(out_reply, "OK", 2) == 0)
 		return GAZECTL_DONE;
 	gz_err(log, "the daemon refuses: %s", out_reply);
 	return GAZECTL_FAILED;
 }
 
-void gazectl_make_printable(char *text)
-{
-	for (; *text; text++)
-		if (iscntrl((unsigned char)*text))
-			*text = '?';
-}
-
 static void make_status_printable(struct gz_status *status)
 {
-	gazectl_make_printable(status->tracker.name);
-	gazectl_make_printable(status->tracker.serial);
-	gazectl_make_printable(status->tracker.reason);
-	gazectl_make_printable(status->recording.file);
-	gazectl_make_printable(status->recording.error);
-	gazectl_make_printable(status->version);
+	gz_utf8_clean(status->tracker.name);
+	gz_utf8_clean(status->tracker.serial);
+	gz_utf8_clean(status->tracker.reason);
+	gz_utf8_clean(status->recording.file);
+	gz_utf8_clean(status->recording.error);
+	gz_utf8_clean(status->version);
 }
 
 bool gazectl_next_status(struct gz_stream *stream, int64_t deadline_ns,

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/utf8.h"
 #include "client/gazectl/output.h"
 #include "daemon/config.h"
 #include "drivers/driver.h"
@@ -49,10 +50,10 @@ static void add_device(struct devices *devices, const char *driver,
 	struct found *found = &devices->items[devices->count++];
 	found->driver = driver;
 	found->entry = *entry;
-	gazectl_make_printable(found->entry.name);
-	gazectl_make_printable(found->entry.serial);
-	gazectl_make_printable(found->entry.place);
-	gazectl_make_printable(found->entry.reason);
+	gz_utf8_clean(found->entry.name);
+	gz_utf8_clean(found->entry.serial);
+	gz_utf8_clean(found->entry.place);
+	gz_utf8_clean(found->entry.reason);
 }
 
 /* Read the settings that gazed would have; its presets if they cannot be read. */

@@ -111,7 +111,4 @@ bool gazectl_next_status(struct gz_stream *stream, int64_t deadline_ns,
 /** Log that no daemon answers at @p endpoint, with the remedy. */
 void gazectl_report_no_daemon(const char *endpoint, const struct gz_log *log);
 
-/** Replace control characters, which could steer a terminal, by '?' in @p text from outside. */
-void gazectl_make_printable(char *text);
-
 #endif

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "base/utf8.h"
 #include "client/gazectl/convert/text_lines.h"
 
 #define GZ_LOG_MODULE "output"
@@ -87,8 +88,9 @@ json_t *gz_output_json_text(const char *text)
 	if (json)
 		return json;
 	struct gz_text valid = { 0 };
-	for (const char *s = text; *s;) {
-		size_t length = gz_text_utf8_length(s);
+	const char *end = text + strlen(text);
+	for (const char *s = text; s < end;) {
+		size_t length = gz_utf8_length(s, (size_t)(end - s));
 		if (length > 0)
 			gz_text_add_bytes(&valid, s, length);
 		else

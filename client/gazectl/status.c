@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 #include "client/gazectl/output.h"
 #include "protocol/wire.h"
 
@@ -125,8 +126,8 @@ static void print_validation(const struct gz_status *status)
 	char measured[GZ_NAME_SIZE], changed[GZ_REASON_SIZE];
 	memcpy(measured, status->validation.measured, sizeof measured);
 	memcpy(changed, status->validation.changed, sizeof changed);
-	gazectl_make_printable(measured);
-	gazectl_make_printable(changed);
+	gz_utf8_clean(measured);
+	gz_utf8_clean(changed);
 	if (!measured[0]) {
 		row("validated", "never, or by another user; run gazectl validate");
 		return;

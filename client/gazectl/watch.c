@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 #include "client/client.h"
 #include "protocol/wire.h"
 
@@ -106,7 +107,7 @@ static void print_status(const struct gz_message *message)
 
 static void print_other(struct gz_message *message)
 {
-	gazectl_make_printable(message->topic);
+	gz_utf8_clean(message->topic);
 	printf("%.6f %s %zu bytes", gz_ns_to_s(message->received_ns), message->topic,
 	       message->size);
 }

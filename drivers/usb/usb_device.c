@@ -1,6 +1,6 @@
 #include "drivers/usb/usb_device.h"
+#include "base/utf8.h"
 
-#include <ctype.h>
 #include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
@@ -37,9 +37,7 @@ static void read_sysfs_attribute(const char *directory, const char *attribute, c
 		text[0] = '\0';
 	fclose(file);
 	text[strcspn(text, "\n")] = '\0';
-	for (char *c = text; *c; c++)
-		if (iscntrl((unsigned char)*c))
-			*c = '?';
+	gz_utf8_clean(text);
 }
 
 void gz_usb_describe(libusb_device *device, struct gz_usb_device *out_device)

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/utf8.h"
 #include "render/data/decoded_volume.h"
 #include "render/data/dicom_name.h"
 
@@ -132,7 +133,7 @@ static void refuse_series_row(void *user, uint32_t index, const char *why)
 	pthread_mutex_lock(&list->lock);
 	struct kept_row *kept = &list->rows[index];
 	snprintf(kept->row.series.reason, sizeof kept->row.series.reason, "%s", why);
-	gz_decode_clean_text(kept->row.series.reason); /* a character may have been cut */
+	gz_utf8_clean(kept->row.series.reason); /* a character may have been cut */
 	finish_change(list, kept);
 }
 

@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/utf8.h"
 #include "render/decode/decode_process.h"
 
 #define GZ_LOG_MODULE "decode"
@@ -50,36 +51,6 @@ static enum gz_result refuse_decoder(const struct run *run, enum gz_result resul
 	return result;
 }
 
-/* Bytes of the UTF-8 character that begins here, 1 to 4; 0 if it is none, or a control character
- * (RFC 3629, 4). */
-static size_t character_length(const unsigned char *text)
-{
-	if (text[0] < 0x80)
-		return text[0] >= 0x20 && text[0] != 0x7f;
-	const size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
-	if (text[0] < 0xc2 || text[0] > 0xf4)
-		return 0;
-	for (size_t i = 1; i < length; i++)
-		if ((text[i] & 0xc0) != 0x80)
-			return 0;
-	const bool control = text[0] == 0xc2 && text[1] < 0xa0;
-	const bool overlong =
-		(text[0] == 0xe0 && text[1] < 0xa0) || (text[0] == 0xf0 && text[1] < 0x90);
-	const bool beyond =
-		(text[0] == 0xed && text[1] > 0x9f) || (text[0] == 0xf4 && text[1] > 0x8f);
-	return control || overlong || beyond ? 0 : length;
-}
-
-void gz_decode_clean_text(char *text)
-{
-	for (unsigned char *at = (unsigned char *)text; *at;) {
-		const size_t length = character_length(at);
-		if (length == 0)
-			*at = '?';
-		at += length ? length : 1;
-	}
-}
-
 static enum gz_result take_line(struct run *run)
 {
 	struct gz_decode_message *message = &run->message;
@@ -90,7 +61,7 @@ static enum gz_result take_line(struct run *run)
 	if (run->lines++ >= GZ_DECODE_LINES_MAX)
 		return GZ_OK;
 	run->errors += level == GZ_LOG_ERROR;
-	gz_decode_clean_text(message->text);
+	gz_utf8_clean(message->text);
 	if (gz_log_wants(run->job->log, level, GZ_LOG_MODULE))
 		gz_log_write(run->job->log, level, GZ_LOG_MODULE, "%s", message->text);
 	return GZ_OK;
@@ -191,7 +162,7 @@ static bool clean_field(char *text, size_t size)
 {
 	if (!memchr(text, 0, size))
 		return false;
-	gz_decode_clean_text(text);
+	gz_utf8_clean(text);
 	return true;
 }
 

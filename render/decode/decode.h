@@ -121,10 +121,6 @@ enum gz_result gz_decode_run(const struct gz_decode_job *job, struct gz_decoded 
  */
 enum gz_result gz_decode_find_program(char *out_path, size_t size);
 
-/** Replace what could disturb a terminal by '?': control characters, and bytes that are no UTF-8.
- */
-void gz_decode_clean_text(char *text);
-
 #ifdef __cplusplus
 }
 #endif

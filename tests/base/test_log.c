@@ -129,6 +129,15 @@ static void log_long_message_is_cut_not_overrun(void **state)
 	assert_in_range(strlen(captured.last), 512, sizeof captured.last - 1);
 }
 
+static void log_message_holds_no_commands_for_a_terminal(void **state)
+{
+	(void)state;
+	struct captured_log captured;
+	captured_log_init(&captured, "*:info");
+	gz_err(&captured.log, "%s: unknown word", "\033[31mred\033]0;title\a\x89PNG\nforged");
+	assert_string_equal(captured.last, "?[31mred?]0;title??PNG?forged: unknown word");
+}
+
 static void log_to_stderr_writes_one_line(void **state)
 {
 	(void)state;
@@ -176,6 +185,7 @@ TEST_SUITE(log)
 		cmocka_unit_test(log_refused_level_does_not_format),
 		cmocka_unit_test(log_null_is_silent),
 		cmocka_unit_test(log_long_message_is_cut_not_overrun),
+		cmocka_unit_test(log_message_holds_no_commands_for_a_terminal),
 		cmocka_unit_test(log_to_stderr_writes_one_line),
 		cmocka_unit_test(ratelimit_passes_the_first_and_counts_the_rest),
 	};

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/utf8.h"
 #include "render/data/series_list.h"
 #include "render/decode/decode.h"
 
@@ -60,7 +61,7 @@ static void check_clean(const char *text, size_t size)
 	char copy[GZ_DECODE_TEXT_SIZE];
 	require(size <= sizeof copy && memchr(text, 0, size) != NULL);
 	strcpy(copy, text);
-	gz_decode_clean_text(copy);
+	gz_utf8_clean(copy);
 	require(strcmp(copy, text) == 0);
 }
 

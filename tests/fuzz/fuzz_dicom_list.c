@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/utf8.h"
 #include "fuzz/fuzz_folder.h"
 #include "render/decode/dicom/dicom_list.h"
 
@@ -46,7 +47,7 @@ static void check_text(const char *text, size_t size)
 	char copy[sizeof(struct gz_decode_series)];
 	require(memchr(text, 0, size) != NULL);
 	strcpy(copy, text);
-	gz_decode_clean_text(copy);
+	gz_utf8_clean(copy);
 	require(strcmp(copy, text) == 0);
 }
 

@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "base/text.h"
+#include "base/utf8.h"
 
 enum { CHUNK = 65536 };
 
@@ -222,41 +223,12 @@ bool gz_text_begins(const char *text, const char *word)
 	return strncasecmp(text, word, strlen(word)) == 0;
 }
 
-size_t gz_text_utf8_length(const char *text)
-{
-	const unsigned char *s = (const unsigned char *)text;
-	static const struct {
-		unsigned char first, last; /* range of the first byte */
-		unsigned char low, high;   /* range of the second byte */
-		size_t length;
-	} rows[] = {
-		/* RFC 3629, section 4 */
-		{ 0xC2, 0xDF, 0x80, 0xBF, 2 }, { 0xE0, 0xE0, 0xA0, 0xBF, 3 },
-		{ 0xE1, 0xEC, 0x80, 0xBF, 3 }, { 0xED, 0xED, 0x80, 0x9F, 3 },
-		{ 0xEE, 0xEF, 0x80, 0xBF, 3 }, { 0xF0, 0xF0, 0x90, 0xBF, 4 },
-		{ 0xF1, 0xF3, 0x80, 0xBF, 4 }, { 0xF4, 0xF4, 0x80, 0x8F, 4 },
-	};
-	if (s[0] < 0x80)
-		return 1;
-	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-		if (s[0] < rows[i].first || s[0] > rows[i].last)
-			continue;
-		if (s[1] < rows[i].low || s[1] > rows[i].high)
-			return 0;
-		for (size_t k = 2; k < rows[i].length; k++)
-			if ((s[k] & 0xC0) != 0x80)
-				return 0;
-		return rows[i].length;
-	}
-	return 0;
-}
-
 void gz_text_copy(char *to, size_t size, const char *text)
 {
 	const char *from = text;
-	size_t used = 0;
-	while (*from) {
-		size_t length = gz_text_utf8_length(from);
+	size_t used = 0, left = strlen(text);
+	while (left > 0) {
+		size_t length = gz_utf8_length(from, left);
 		if (used + (length ? length : 1) >= size)
 			break;
 		if (length == 0)
@@ -264,6 +236,7 @@ void gz_text_copy(char *to, size_t size, const char *text)
 		for (size_t i = 0; i < length; i++)
 			to[used++] = from[i];
 		from += length ? length : 1;
+		left -= length ? length : 1;
 	}
 	to[used] = '\0';
 }

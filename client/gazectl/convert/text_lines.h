@@ -85,9 +85,6 @@ bool gz_text_take_number(const char **text, double *out_value);
 /** Whether @p text begins with @p word, ignoring case. */
 bool gz_text_begins(const char *text, const char *word);
 
-/** Bytes of the UTF-8 character at the beginning of @p text (RFC 3629), 0 if it is not UTF-8. */
-size_t gz_text_utf8_length(const char *text);
-
 /** Copy @p text into @p to of @p size bytes, cut between characters if it is too long; bytes that
  * are not UTF-8 become '?'. */
 void gz_text_copy(char *to, size_t size, const char *text);

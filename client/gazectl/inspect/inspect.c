@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 #include "client/gazectl/inspect/log_picture.h"
 #include "client/gazectl/inspect/log_summary.h"
 #include "client/gazectl/output.h"
@@ -193,7 +194,7 @@ static void print_marks(struct gz_log_summary *summary)
 	printf("marks        %" PRIu64 "\n", summary->mark_count);
 	for (size_t i = 0; i < summary->mark_count && i < GZ_LOG_SUMMARY_MARKS; i++) {
 		struct gz_log_summary_mark *mark = &summary->marks[i];
-		gazectl_make_printable(mark->text);
+		gz_utf8_clean(mark->text);
 		printf("  %12.3f s %s\n", gz_ns_to_s(mark->host_ns) - gz_ns_to_s(summary->first_ns),
 		       mark->text);
 	}
@@ -318,10 +319,10 @@ static json_t *json_log(const struct gz_gaze_log_header *header,
 static void print_log_table(const struct gz_gaze_log_header *header, struct gz_log_summary *summary)
 {
 	struct gz_gaze_log_header printable = *header;
-	gazectl_make_printable(printable.tracker);
-	gazectl_make_printable(printable.serial);
-	gazectl_make_printable(printable.started);
-	gazectl_make_printable(printable.software);
+	gz_utf8_clean(printable.tracker);
+	gz_utf8_clean(printable.serial);
+	gz_utf8_clean(printable.started);
+	gz_utf8_clean(printable.software);
 	print_log_header(&printable);
 	print_extent(summary, header->rate_hz);
 	print_quality(summary);

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/utf8.h"
 #include "client/gazectl/gazectl.h"
 #include "client/gazectl/output.h"
 #include "client/gazectl/validate/correction.h"
@@ -243,7 +244,7 @@ static enum gazectl_exit check_status(struct check_run *check, const struct gz_s
 		return GAZECTL_DONE;
 	char reason[GZ_REASON_SIZE];
 	memcpy(reason, status->tracker.reason, sizeof reason);
-	gazectl_make_printable(reason);
+	gz_utf8_clean(reason);
 	gz_err(check->log,
 	       "the tracker is %s%s%s, at target %zu: nothing is stored; try again when gazectl "
 	       "status shows that it is running",

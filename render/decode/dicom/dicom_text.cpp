@@ -5,7 +5,7 @@
 #include <iconv.h>
 #include <vector>
 
-#include "render/decode/decode.h"
+#include "base/utf8.h"
 
 namespace gz_dicom
 {
@@ -165,7 +165,7 @@ std::string utf8_of(const std::string &text, const std::string &charset, text_ki
 	}
 	convert(now, run, out);
 	out.resize(std::strlen(out.c_str()));
-	gz_decode_clean_text(&out[0]);
+	gz_utf8_clean(&out[0]);
 	return out;
 }
 
