@@ -477,9 +477,11 @@ const char *gz_options_nearest(const struct gz_option_binding *bindings, size_t 
 			       const char *key)
 {
 	const char *nearest = NULL;
-	/* Similar: at most a third of the key differs, or two letters of a short one. Chosen. */
-	size_t least = strlen(key) / 3 > 2 ? strlen(key) / 3 : 2;
-	if (strlen(key) >= NEAR_KEY_SIZE)
+	/* Similar: at most a third of the key differs, or two letters of a short one, but no more
+	 * than half of it. Chosen. */
+	const size_t length = strlen(key);
+	size_t least = length / 3 > 2 ? length / 3 : length / 2 < 2 ? length / 2 : 2;
+	if (length >= NEAR_KEY_SIZE)
 		return NULL;
 	for (size_t b = 0; b < count; b++) {
 		for (size_t i = 0; i < bindings[b].count; i++) {

@@ -177,9 +177,9 @@ struct gz_operands {
 
 /**
  * Read a command line: "--key value", "--key=value", "--key" for a BOOL; "--" ends the options.
- * Dashes and underscores in a key are equivalent ("--rate-hz" is "rate_hz"). A value may begin with
- * one dash ("--turn -3"), with two only after '='. "-" alone is an operand. A BOOL takes a value
- * only after '=' ("--cross=no").
+ * "-h" is "--help" if there is an option of that key. Dashes and underscores in a key are
+ * equivalent ("--rate-hz" is "rate_hz"). A value may begin with one dash ("--turn -3"), with two
+ * only after '='. "-" alone is an operand. A BOOL takes a value only after '=' ("--cross=no").
  *
  * @param argc, argv         as main() gets them; argv[0] is skipped
  * @param[out] out_operands  the other arguments, pointing into @p argv; written on success only;

@@ -220,6 +220,14 @@ static enum gz_result read_option_argument(struct option_reader *reader, int arg
 	return GZ_ERR_INVAL;
 }
 
+/* Take "-h" for "--help", where there is such a switch. @return false: it is none */
+static bool read_help_letter(struct option_reader *reader, const char *argument, int at)
+{
+	const struct gz_option *option =
+		strcmp(argument, "-h") == 0 ? find_typed_option(reader, "help") : NULL;
+	return option && set_read_option(reader, option->key, "true", at);
+}
+
 static enum gz_result read_all_arguments(struct option_reader *reader, int argc, char *const *argv,
 					 struct gz_operands *operands)
 {
@@ -233,6 +241,8 @@ static enum gz_result read_all_arguments(struct option_reader *reader, int argc,
 			if (result != GZ_OK)
 				return result;
 		} else if (!options_ended && argument[0] == '-' && argument[1]) {
+			if (read_help_letter(reader, argument, at))
+				continue;
 			gz_err(reader->log,
 			       "%s: options begin with two dashes; --help lists all options",
 			       argument);

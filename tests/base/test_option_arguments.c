@@ -98,6 +98,23 @@ static void arguments_none_is_fine(void **state)
 	assert_int_equal(run.operands.count, 0);
 }
 
+static void arguments_take_the_letter_h_for_help(void **state)
+{
+	(void)state;
+	static const struct gz_option options[] = { { "help", GZ_OPTION_BOOL, 0, .preset = "false",
+						      .help = "print this" } };
+	bool help = false;
+	struct captured_log captured;
+	char *const argv[] = { (char[]) { "program" }, (char[]) { "-h" } };
+	const struct gz_option_binding binding = { .options = options,
+						   .count = 1,
+						   .target = &help };
+	captured_log_init(&captured, NULL);
+	assert_int_equal(gz_options_read_arguments(&binding, 1, 2, argv, NULL, &captured.log),
+			 GZ_OK);
+	assert_true(help);
+}
+
 static void arguments_refusals_name_option_and_remedy(void **state)
 {
 	(void)state;
@@ -113,9 +130,12 @@ static void arguments_refusals_name_option_and_remedy(void **state)
 		  "--publish.prt: unknown option; did you mean --publish.port?" },
 		{ { "--port", "2000" }, "--port: unknown option; did you mean --publish.port?" },
 		{ { "--velocity" }, "--velocity: unknown option; --help lists all options" },
+		{ { "--sie" }, "--sie: unknown option; did you mean --size?" },
+		{ { "--siv" }, "--siv: unknown option; --help lists all options" },
 		{ { "--size", "1x1", "--size=2x2" }, "--size: given twice; keep one of the two" },
 		{ { "--show-cross", "--show_cross" },
 		  "--show_cross: given twice; keep one of the two" },
+		{ { "-h" }, "-h: options begin with two dashes; --help lists all options" },
 		{ { "-x" }, "-x: options begin with two dashes; --help lists all options" },
 		{ { "file" }, "file: unexpected argument; --help lists all options" },
 		{ { "--=5" }, "--: unknown option; --help lists all options" },
@@ -150,6 +170,7 @@ TEST_SUITE(option_arguments)
 		cmocka_unit_test(arguments_bool_takes_a_value_only_by_equals),
 		cmocka_unit_test(arguments_positional_come_in_order),
 		cmocka_unit_test(arguments_none_is_fine),
+		cmocka_unit_test(arguments_take_the_letter_h_for_help),
 		cmocka_unit_test(arguments_refusals_name_option_and_remedy),
 		cmocka_unit_test(arguments_key_too_long_for_any_is_refused),
 	};
