@@ -316,6 +316,14 @@ static void what_cannot_be_converted_is_refused_and_leaves_nothing(void **state)
 	program = GAZECTL_RUN("convert", in_directory("nowhere.asc"), to);
 	assert_int_equal(program.status, 1);
 	assert_non_null(strstr(program.err_text, "not found"));
+	const char *empty = in_directory("empty.asc");
+	fclose(fopen(empty, "wb"));
+	program = GAZECTL_RUN("convert", empty, to);
+	assert_int_equal(program.status, 1);
+	assert_non_null(strstr(program.err_text, "the file is empty"));
+	program = GAZECTL_RUN("convert", in_directory("."), to);
+	assert_int_equal(program.status, 1);
+	assert_non_null(strstr(program.err_text, "cannot be read"));
 	program = GAZECTL_RUN("convert", from);
 	assert_int_equal(program.status, 2);
 	program = GAZECTL_RUN("convert", "--to", "xls", from, to);

@@ -151,6 +151,9 @@ static void help_and_version_are_printed(void **state)
 		char usage[64];
 		RUN("--help");
 		assert_contains(program.out_text, commands[i]);
+		RUN(commands[i], "-h");
+		assert_done();
+		assert_contains(program.out_text, "usage: gazectl");
 		RUN(commands[i], "--help");
 		assert_done();
 		snprintf(usage, sizeof usage, "usage: gazectl %s [OPTION]", commands[i]);
@@ -431,6 +434,21 @@ static void inspect_tells_of_a_damaged_log_by_its_exit_status(void **state)
 	assert_contains(program.out_text, "\"ending\": \"corrupted\"");
 }
 
+static void inspect_of_a_log_without_samples_shows_no_numbers_of_them(void **state)
+{
+	(void)state;
+	static const char text[] = "#gazecast-log 1\n\033[31m = x\n";
+	char path[256];
+	write_file("headless.gzl", text, sizeof text - 1, path);
+	RUN("inspect", path);
+	assert_int_equal(program.status, 4);
+	assert_contains(program.out_text, "tracker      unknown\n");
+	assert_contains(program.out_text, "samples      0\n");
+	assert_null(strstr(program.out_text, "nan"));
+	assert_null(strstr(program.out_text, "rate"));
+	assert_null(strstr(program.out_text, "recorded"));
+}
+
 static void inspect_of_what_is_no_log_is_refused(void **state)
 {
 	(void)state;
@@ -471,6 +489,7 @@ TEST_SUITE(gazectl)
 		cmocka_unit_test(watch_goes_on_when_the_daemon_dies_and_returns),
 		cmocka_unit_test(inspect_tells_of_a_whole_log),
 		cmocka_unit_test(inspect_tells_of_a_damaged_log_by_its_exit_status),
+		cmocka_unit_test(inspect_of_a_log_without_samples_shows_no_numbers_of_them),
 		cmocka_unit_test(inspect_of_what_is_no_log_is_refused),
 		cmocka_unit_test(full_disk_under_the_output_is_told),
 	};

@@ -184,6 +184,12 @@ static bool choose_reader(const struct conversion *conversion, struct gz_text_li
 		if (*out_reader)
 			return true;
 	}
+	if (result == GZ_ERR_END || result == GZ_ERR_IO) {
+		gz_err(conversion->log, "%s: %s", conversion->input,
+		       result == GZ_ERR_END ? "the file is empty; name a recording"
+					    : "cannot be read; name a file that is not damaged");
+		return false;
+	}
 	gz_err(conversion->log,
 	       "%s: the format is not recognised; give it with --from, or name its columns with "
 	       "--from table --table.columns",

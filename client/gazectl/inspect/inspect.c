@@ -64,10 +64,11 @@ static double percent(uint64_t part, uint64_t whole)
 
 static void print_log_header(const struct gz_gaze_log_header *header)
 {
-	printf("tracker      %s%s%s\n", header->tracker, header->serial[0] ? " " : "",
-	       header->serial);
-	printf("recorded     %s%sby %s\n", header->started, header->started[0] ? " " : "",
-	       header->software);
+	printf("tracker      %s%s%s\n", header->tracker[0] ? header->tracker : "unknown",
+	       header->serial[0] ? " " : "", header->serial);
+	if (header->started[0] || header->software[0])
+		printf("recorded     %s%sby %s\n", header->started, header->started[0] ? " " : "",
+		       header->software[0] ? header->software : "unknown software");
 	if (header->has_display)
 		printf("display      %dx%d px, %gx%g mm, %g mm away\n", header->display.px[0],
 		       header->display.px[1], header->display.mm[0], header->display.mm[1],
@@ -98,6 +99,8 @@ static void print_extent(const struct gz_log_summary *summary, double nominal_hz
 		printf("malformed    %" PRIu64 " lines, skipped\n", summary->malformed);
 	printf("duration     %.3f s\n", summary->duration_s);
 	printf("samples      %" PRIu64 "\n", summary->samples);
+	if (summary->samples == 0)
+		return;
 	printf("rate         %.2f Hz", summary->rate_hz);
 	if (nominal_hz > 0)
 		printf(" (%g Hz nominal)", nominal_hz);
