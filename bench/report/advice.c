@@ -182,9 +182,9 @@ static void say_errors(const struct teller *teller, size_t series)
 	const struct gz_error_metric *metric = &gz_error_metrics[teller->question->measure];
 	const struct gz_error_summary *errors = errors_of(teller->group, series, teller->question);
 	snprintf(text, sizeof text,
-		 "%s against %s is %.3g on average and %.3g at worst of %zu places of the gaze%s.",
+		 "%s against %s is %.3g on average and %.3g at worst of %zu %s of the gaze%s.",
 		 metric->title, gz_error_reference_names[teller->question->reference], errors->mean,
-		 errors->worst, errors->count,
+		 errors->worst, errors->count, errors->count == 1 ? "place" : "places",
 		 metric->kind == GZ_ERROR_FLIP ? " (0 = identical, 1 = maximally different)" : "");
 	say(teller, text);
 }

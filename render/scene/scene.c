@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/workers.h"
@@ -557,10 +558,24 @@ enum gz_result gz_scene_find_templates(const char *scene, const struct gz_log *l
 	return result;
 }
 
+/* Whether the file exists and is a volume, a picture or the like. */
+static bool is_other_than_scene(const char *path)
+{
+	const enum gz_file_kind kind = gz_file_kind_of(path);
+	return kind != GZ_FILE_SCENE && kind != GZ_FILE_OTHER && access(path, F_OK) == 0;
+}
+
 enum gz_result gz_scene_load(const char *path, const struct gz_loading *loading,
 			     const struct gz_log *log, struct gz_scene *out_scene)
 {
 	const struct gz_scene_source source = { .path = path };
+	if (is_other_than_scene(path)) {
+		gz_err(log,
+		       "%s: not a scene; open it in gazeview, save a scene of it (Ctrl+S) and name "
+		       "that",
+		       path);
+		return GZ_ERR_FORMAT;
+	}
 	return gz_scene_load_changed(&source, loading, log, out_scene);
 }
 

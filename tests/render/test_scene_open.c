@@ -82,6 +82,20 @@ static void binary_file_is_no_scene(void **state)
 	assert_int_equal(gz_file_kind_of(files_write("unknown", "[a]\n", 4)), GZ_FILE_OTHER);
 }
 
+static void volume_is_no_scene_to_load(void **state)
+{
+	(void)state;
+	struct gz_scene scene = { 0 };
+	struct captured_log log;
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_scene_load(write_nrrd("alone.nrrd"), NULL, &log.log, &scene),
+			 GZ_ERR_FORMAT);
+	assert_non_null(strstr(log.last, "alone.nrrd: not a scene; open it in gazeview"));
+	assert_int_equal(gz_scene_load(files_path("missing.nrrd"), NULL, &log.log, &scene),
+			 GZ_ERR_NOT_FOUND);
+	assert_non_null(strstr(log.last, "no such file"));
+}
+
 /* How far from the picture's middle the corners of a box are at most, as a share of the picture. */
 static double widest_corner(const struct gz_camera *camera, const struct gz_volume *volume,
 			    const struct gz_clip_region *box)
@@ -459,6 +473,7 @@ TEST_SUITE(scene_open)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(kind_of_a_file_follows_from_its_name),
 		cmocka_unit_test(binary_file_is_no_scene),
+		cmocka_unit_test(volume_is_no_scene_to_load),
 		cmocka_unit_test(
 			volume_without_a_scene_is_lit_and_what_is_seen_of_it_fills_the_view),
 		cmocka_unit_test(transfer_function_for_other_data_is_told),
