@@ -334,6 +334,13 @@ static enum gazectl_exit collect_samples(struct check_run *check)
 	return status;
 }
 
+/* A changed correction ends a recording. */
+static bool would_end_recording(const struct check_run *check)
+{
+	return check->result->status.recording.state == GZ_RECORDING_ON &&
+	       (check->settings->correct || check->settings->forget);
+}
+
 static enum gazectl_exit check_tracker(const struct check_run *check)
 {
 	const struct gz_status *status = &check->result->status;
@@ -345,8 +352,7 @@ static enum gazectl_exit check_tracker(const struct check_run *check)
 		       gz_tracker_state_name(status->tracker.state), reason[0] ? ": " : "", reason);
 		return GAZECTL_FAILED;
 	}
-	if (status->recording.state == GZ_RECORDING_ON &&
-	    (check->settings->correct || check->settings->forget)) {
+	if (would_end_recording(check)) {
 		gz_err(check->log, "a recording is running, and a changed correction would end it: "
 				   "end it first with gazectl stop");
 		return GAZECTL_FAILED;
@@ -359,18 +365,19 @@ static enum gazectl_exit check_tracker(const struct check_run *check)
 }
 
 /* Wait until the tracker is running, before anyone is asked to look at targets: one that was just
- * started may need a moment. */
+ * started may need a moment. The first status may be older than the end of a recording. */
 static enum gazectl_exit await_tracker(struct check_run *check)
 {
 	int64_t deadline_ns = gz_clock_now_ns() + STATUS_PATIENCE_NS;
 	struct gz_status *status = &check->result->status;
-	bool told = false;
+	int told = 0;
 	while (gazectl_next_status(check->stream, deadline_ns, status)) {
-		told = true;
-		if (status->tracker.state == GZ_TRACKER_RUNNING)
+		told++;
+		if (status->tracker.state == GZ_TRACKER_RUNNING &&
+		    (told > 1 || !would_end_recording(check)))
 			break;
 	}
-	if (told)
+	if (told > 0)
 		return check_tracker(check);
 	gz_err(check->log, "%s sends no status: it is not gazed, or gazed hangs; restart it",
 	       gz_stream_endpoint(check->stream));
