@@ -82,6 +82,7 @@ static void fill_cast(struct bench *bench)
 		cast->direction_dx[axis] = (float)rays.frame.direction_dx[axis];
 		cast->direction_dy[axis] = (float)rays.frame.direction_dy[axis];
 	}
+	cast->clip_plane[3] = 1; /* the other numbers are 0: no plane */
 	cast->step[0] = (float)(gz_volume_voxel_length(volume) /
 				bench->scene.settings.rays.ray_sampling_rate);
 }
@@ -196,7 +197,7 @@ static int run(struct bench *bench, int rounds)
 	print("bare loop", &limit, &limit);
 	print("standard", &frames[0], &limit);
 	print("acuity", &frames[1], &limit);
-	return isfinite(bench->sum) ? 0 : -1;
+	return limit.samples > 0 && isfinite(bench->sum) ? 0 : -1;
 }
 
 int main(int argc, char **argv)
