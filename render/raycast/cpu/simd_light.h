@@ -71,6 +71,29 @@ struct shine {
 	vf factor, white;
 };
 
+/* x^exponent, for an exponent from 1 up. */
+SIMD vf whole_power(vf x, int exponent)
+{
+	for (; !(exponent & 1); exponent >>= 1)
+		x = x * x;
+	vf power = x;
+	while (exponent >>= 1) {
+		x = x * x;
+		if (exponent & 1)
+			power = power * x;
+	}
+	return power;
+}
+
+/* |N.H|^shininess. Most scenes have a whole number, which takes a third of the time. */
+SIMD vf find_gloss(const struct gz_cast_light *light, vf cosine)
+{
+	const vf clamped = clamp_lanes(vf_abs(cosine), vf_set(light->least_cosine), vf_set(1));
+	if (light->whole_shininess)
+		return whole_power(clamped, light->whole_shininess);
+	return exp2_negative(vf_set(light->shininess) * log2_positive(clamped));
+}
+
 SIMD struct shine find_shine(const struct gz_cast_light *light, const struct view *view,
 			     const vf normal[3], vf occlusion)
 {
@@ -79,9 +102,7 @@ SIMD struct shine find_shine(const struct gz_cast_light *light, const struct vie
 				vf_set(light->towards[2]) };
 	const vf side = clamp_lanes(dot_lanes(normal, view->eye) * facing, vf_set(-1), vf_set(1));
 	const vf diffuse = vf_max(side * dot_lanes(normal, towards), vf_set(0));
-	const vf cosine =
-		clamp_lanes(vf_abs(dot_lanes(normal, view->half)), vf_set(1e-12F), vf_set(1));
-	const vf gloss = exp2_negative(vf_set(light->shininess) * log2_positive(cosine)) *
+	const vf gloss = find_gloss(light, dot_lanes(normal, view->half)) *
 			 vf_min(diffuse * facing, vf_set(1));
 	const vf ambient = vf_set(light->ambient) * (vf_set(1) - occlusion);
 	return (struct shine) { vf_fma(diffuse, vf_set(light->diffuse), ambient),

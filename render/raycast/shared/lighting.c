@@ -167,6 +167,14 @@ static void fill_shadow(const struct gz_volume *volume, const int factor[3],
 		(float)fmax(fmin(rays->light.shadow_reach, through), (double)GZ_SHADOW_START);
 }
 
+void gz_cast_light_polish(double shininess, struct gz_cast_light *out_light)
+{
+	out_light->shininess = (float)shininess;
+	out_light->whole_shininess = shininess == floor(shininess) ? (int)shininess : 0;
+	/* A power of 2^-64 is no denormal number, which would be slow. */
+	out_light->least_cosine = (float)exp2(-64 / shininess);
+}
+
 void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		      const struct gz_ray_params *rays, const struct gz_ray_frame *ray_frame,
 		      struct gz_cast_light *out_light)
@@ -181,10 +189,10 @@ void gz_lighting_fill(const struct gz_lighting *lighting, const int factor[3],
 		.ambient = (float)light->ambient,
 		.diffuse = (float)light->diffuse,
 		.specular = (float)light->specular,
-		.shininess = (float)light->shininess,
 		.reflection = (float)light->reflection,
 		.occlusion = (float)light->occlusion,
 	};
+	gz_cast_light_polish(light->shininess, out_light);
 	for (int axis = 0; axis < 3; axis++) {
 		out_light->towards[axis] = (float)towards[axis];
 		out_light->gradient_scale[axis] = (float)(scale[axis] / factor[axis]);

@@ -52,6 +52,8 @@ struct gz_cast_light {
 	bool gradient;    /**< surfaces are lit */
 	float towards[3]; /**< unit vector in world directions */
 	float ambient, diffuse, specular, shininess;
+	int whole_shininess; /**< 0: shininess is not a whole number */
+	float least_cosine;  /**< its power is far below what can be seen, and no less */
 	float reflection;
 	float gradient_scale[3];       /**< see gz_light_gradient_scale(); of the level of detail */
 	float occlusion;               /**< greatest share of the ambient light that is blocked */
@@ -99,6 +101,9 @@ enum gz_result gz_lighting_prepare(struct gz_lighting *lighting, const struct gz
 /** The time that gz_lighting_prepare() has spent on what later frames reuse, since the last call;
  * 0: none was due. */
 double gz_lighting_take_spent_ms(struct gz_lighting *lighting);
+
+/** Fill the shininess and what follows from it. */
+void gz_cast_light_polish(double shininess, struct gz_cast_light *out_light);
 
 /**
  * Fill what the kernels take of light, after gz_lighting_prepare() with the same @p rays.

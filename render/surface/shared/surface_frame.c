@@ -57,9 +57,9 @@ static void fill_look(const struct gz_ray_params *rays, const struct gz_ray_fram
 		.ambient = (float)light->ambient,
 		.diffuse = (float)light->diffuse,
 		.specular = (float)light->specular,
-		.shininess = (float)light->shininess,
 		.reflection = (float)light->reflection,
 	};
+	gz_cast_light_polish(light->shininess, &frame->light);
 	frame->background = UINT32_C(0xFF000000);
 	for (int i = 0; i < 3; i++) {
 		frame->light.towards[i] = (float)towards[i];
