@@ -67,7 +67,8 @@ static double value_at(const struct gz_volume *volume, const double at[3])
 	return sum;
 }
 
-static void fill_at_random(struct gz_volume *volume, uint32_t *state)
+/* Calm 16-bit values differ by less than a signed word holds. */
+static void fill_at_random(struct gz_volume *volume, bool calm, uint32_t *state)
 {
 	const size_t voxels =
 		(size_t)volume->dims[0] * (size_t)volume->dims[1] * (size_t)volume->dims[2];
@@ -75,6 +76,8 @@ static void fill_at_random(struct gz_volume *volume, uint32_t *state)
 	uint8_t *byte = volume->voxels;
 	for (size_t i = 0; i < bytes; i++)
 		byte[i] = draw(state, 7) == 0 ? 0xFF : (uint8_t)draw(state, 255);
+	for (size_t i = 1; calm && volume->type == GZ_VOXEL_U16 && i < bytes; i += 2)
+		byte[i] = (uint8_t)(0x60 + (byte[i] & 0x3F));
 }
 
 /* Places within `reach` voxels of each other, from `rim` voxels inside the outer data to as many
@@ -164,12 +167,14 @@ static void check(enum gz_voxel_type type, bool wide, double rim)
 		if (!gz_cast_kernels_find(sets[set].name) || (wide && set == 0))
 			continue;
 		for (int round = 0; round < ROUNDS; round++) {
-			const int *dims = sizes[round % 3];
-			struct small_scene scene =
-				small_scene_waves(dims[0], dims[1], dims[2], type);
+			/* Blocks for differences keep two more voxels from the rim. */
+			const int *size = sizes[round % 3],
+				  more = rim >= 1 && round % 4 > 0 ? 9 : 0;
+			struct small_scene scene = small_scene_waves(size[0] + more, size[1] + more,
+								     size[2] + more, type);
 			struct gz_cast cast = { 0 };
 			struct look_up_places places = { 0 };
-			fill_at_random(&scene.volume, &state);
+			fill_at_random(&scene.volume, round & 1, &state);
 			gz_cast_fill_voxels(&scene.volume, &cast);
 			draw_places(&scene.volume, reach, rim, &state, &places);
 			sets[set].look_up(&cast, type, wide, rim >= 1, &places);
@@ -185,12 +190,12 @@ static void check(enum gz_voxel_type type, bool wide, double rim)
 						    places.difference_single[axis], sets[set].name);
 			}
 			held += places.held;
-			differences_held += places.differences_held;
+			differences_held += (round & 1) && places.differences_held;
 			small_scene_free(&scene);
 		}
 		/* Most places are chosen to fit. */
 		assert_true(held > ROUNDS / 2);
-		assert_true(rim < 1 || differences_held > ROUNDS / 2);
+		assert_true(rim < 1 || differences_held > ROUNDS / 4);
 	}
 }
 

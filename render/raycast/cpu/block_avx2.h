@@ -70,6 +70,12 @@ SIMD void block_look_up(const vi slices[BLOCK_EDGE], vi control, vi *below, vi *
 	*above = _mm256_blendv_epi8(_mm256_blendv_epi8(found[1], found[2], odd), found[3], second);
 }
 
+/* The number in the block of the voxel at these places. */
+SIMD vi block_first(const vf whole[3])
+{
+	return vi_round(vf_fma(whole[2], vf_set(16), vf_fma(whole[1], vf_set(4), whole[0])));
+}
+
 /* In each lane the neighbours (x, y) = 00, 01, 10, 11. */
 SIMD void block_pairs_u8(const struct block_voxels *block, vi first, vi pairs[4])
 {
@@ -85,15 +91,20 @@ SIMD void block_pairs_u8(const struct block_voxels *block, vi first, vi pairs[4]
 	}
 }
 
-/* In each half of a register the neighbours along x of all its lanes, and those at the next y: so
- * unpacking puts them in order. */
-SIMD void block_pairs_u16(const struct block_voxels *block, vi first, vi pairs[4])
+/* For block_look_up(): in each half of a register the neighbours along x of all its lanes, and
+ * those at the next y. So unpacking puts them in order. */
+SIMD vi words_control(vi first)
 {
 	const vi own =
 		both_halves(_mm_setr_epi8(0, 0, 4, 4, 8, 8, 12, 12, 0, 0, 4, 4, 8, 8, 12, 12));
 	const vi offset =
 		both_halves(_mm_setr_epi8(0, 1, 0, 1, 0, 1, 0, 1, 4, 5, 4, 5, 4, 5, 4, 5));
-	const vi control = _mm256_add_epi8(_mm256_shuffle_epi8(first, own), offset);
+	return _mm256_add_epi8(_mm256_shuffle_epi8(first, own), offset);
+}
+
+SIMD void block_pairs_u16(const struct block_voxels *block, vi first, vi pairs[4])
+{
+	const vi control = words_control(first);
 	vi low[2], high[2];
 	block_look_up(block->bytes, control, &low[0], &low[1]);
 	block_look_up(block->high_bytes, control, &high[0], &high[1]);
@@ -107,12 +118,142 @@ SIMD void block_pairs(const struct block_voxels *block, enum gz_voxel_type type,
 		      const vf whole[3], vi pairs[4])
 {
 	(void)wide;
-	const vi first =
-		vi_round(vf_fma(whole[2], vf_set(16), vf_fma(whole[1], vf_set(4), whole[0])));
+	const vi first = block_first(whole);
 	if (type == GZ_VOXEL_U8)
 		block_pairs_u8(block, first, pairs);
 	else
 		block_pairs_u16(block, first, pairs);
+}
+
+/* The same for slices of which both halves are alike and only one is kept. */
+SIMD void near_look_up(const __m128i slices[BLOCK_EDGE], vi control, vi *below, vi *above)
+{
+	vi both[BLOCK_EDGE];
+	for (int z = 0; z < BLOCK_EDGE; z++)
+		both[z] = both_halves(slices[z]);
+	block_look_up(both, control, below, above);
+}
+
+/* The slices of the blocks around one, a voxel before and after it along each axis: bytes of a
+ * voxel. Along z those after it are those before it, two slices on. */
+struct near_bytes {
+	__m128i x[2][BLOCK_EDGE], y[2][BLOCK_EDGE], z[BLOCK_EDGE + 2];
+};
+
+struct near_blocks {
+	struct near_bytes low;  /* of 8-bit voxels the only ones */
+	struct near_bytes high; /* of 16-bit voxels, less 128 */
+};
+
+/* The first four bytes of four halves. */
+SIMD __m128i first_bytes(__m128i two, __m128i next_two)
+{
+	return _mm_castps_si128(
+		_mm_shuffle_ps(_mm_castsi128_ps(two), _mm_castsi128_ps(next_two), 0x88));
+}
+
+/* From rows 0 to 3 of a slice, two a register, which begin a voxel before the block. */
+SIMD __m128i near_middle(__m128i two, __m128i next_two)
+{
+	return first_bytes(_mm_srli_epi64(two, 8), _mm_srli_epi64(next_two, 8));
+}
+
+/* From rows -1 to 4 of slice z. */
+SIMD void near_slice(const __m128i rows[3], int z, struct near_bytes *near)
+{
+	const __m128i two = _mm_alignr_epi8(rows[1], rows[0], 8);
+	const __m128i next_two = _mm_alignr_epi8(rows[2], rows[1], 8);
+	near->x[0][z] = first_bytes(two, next_two);
+	near->x[1][z] = first_bytes(_mm_srli_epi64(two, 16), _mm_srli_epi64(next_two, 16));
+	near->y[0][z] = near_middle(rows[0], rows[1]);
+	near->y[1][z] = near_middle(rows[1], rows[2]);
+	near->z[z + 1] = near_middle(two, next_two);
+}
+
+/* Two rows of eight voxels each, their low bytes and, of 16 bits, their high ones less 128. */
+SIMD void near_rows(enum gz_voxel_type type, const char *from, int64_t row, __m128i *low,
+		    __m128i *high)
+{
+	if (type == GZ_VOXEL_U8) {
+		int64_t rows[2];
+		memcpy(&rows[0], from, sizeof rows[0]);
+		memcpy(&rows[1], from + row, sizeof rows[1]);
+		*low = _mm_set_epi64x(rows[1], rows[0]);
+		return;
+	}
+	__m128i first, second;
+	memcpy(&first, from, sizeof first);
+	memcpy(&second, from + row, sizeof second);
+	const __m128i byte = _mm_set1_epi16(0xFF);
+	*low = _mm_packus_epi16(_mm_and_si128(first, byte), _mm_and_si128(second, byte));
+	*high = _mm_xor_si128(_mm_packus_epi16(_mm_srli_epi16(first, 8), _mm_srli_epi16(second, 8)),
+			      _mm_set1_epi8((int8_t)0x80));
+}
+
+/* Load the blocks around one whose first voxel is at `from`; strides are in bytes. Rows are read to
+ * three voxels beyond what is needed. */
+SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t row, int64_t slice,
+			   struct near_blocks *near)
+{
+	from -= type == GZ_VOXEL_U8 ? 1 : 2;
+	for (int z = -1; z <= BLOCK_EDGE; z++) {
+		__m128i low[3], high[3];
+		const int outer = z < 0 || z == BLOCK_EDGE;
+		const char *rows = from + z * slice - (outer ? 0 : row);
+		for (int i = 0; i < (outer ? 2 : 3); i++)
+			near_rows(type, rows + 2 * i * row, row, &low[i], &high[i]);
+		if (outer) {
+			near->low.z[z + 1] = near_middle(low[0], low[1]);
+			if (type != GZ_VOXEL_U8)
+				near->high.z[z + 1] = near_middle(high[0], high[1]);
+		} else {
+			near_slice(low, z, &near->low);
+			if (type != GZ_VOXEL_U8)
+				near_slice(high, z, &near->high);
+		}
+	}
+}
+
+/* The slices of the block before (0) or after (1) along an axis. */
+SIMD const __m128i *near_side(const struct near_bytes *near, int axis, int side)
+{
+	return axis == 0 ? near->x[side] : axis == 1 ? near->y[side] : near->z + 2 * side;
+}
+
+/* Differences along an axis, weighted along x, in the order (y, z) = 00, 10, 01, 11. `first` is the
+ * number of the voxel before each lane's place. Returns 0 if there are none. */
+SIMD int near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, int axis, vi first,
+		      vi weights, vi rows[4])
+{
+	const vi control = words_control(first);
+	vi before[2], after[2];
+	near_look_up(near_side(&near->low, axis, 0), control, &before[0], &before[1]);
+	near_look_up(near_side(&near->low, axis, 1), control, &after[0], &after[1]);
+	if (type == GZ_VOXEL_U8) {
+		const vi signs = _mm256_set1_epi16((int16_t)0xFF01);
+		for (int z = 0; z < 2; z++) {
+			const vi pairs[2] = { _mm256_unpacklo_epi8(after[z], before[z]),
+					      _mm256_unpackhi_epi8(after[z], before[z]) };
+			for (int y = 0; y < 2; y++)
+				rows[2 * z + y] = vi_sum_of_products(
+					_mm256_maddubs_epi16(pairs[y], signs), weights);
+		}
+		return 1;
+	}
+	vi high_before[2], high_after[2];
+	near_look_up(near_side(&near->high, axis, 0), control, &high_before[0], &high_before[1]);
+	near_look_up(near_side(&near->high, axis, 1), control, &high_after[0], &high_after[1]);
+	for (int z = 0; z < 2; z++) {
+		rows[2 * z] = vi_subtract(
+			vi_sum_of_products(_mm256_unpacklo_epi8(after[z], high_after[z]), weights),
+			vi_sum_of_products(_mm256_unpacklo_epi8(before[z], high_before[z]),
+					   weights));
+		rows[2 * z + 1] = vi_subtract(
+			vi_sum_of_products(_mm256_unpackhi_epi8(after[z], high_after[z]), weights),
+			vi_sum_of_products(_mm256_unpackhi_epi8(before[z], high_before[z]),
+					   weights));
+	}
+	return 1;
 }
 
 /* There are no blocks of floats. */

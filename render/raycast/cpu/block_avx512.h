@@ -102,17 +102,23 @@ SIMD void block_load(enum gz_voxel_type type, int wide, const void *from, int64_
 	}
 }
 
-SIMD void block_pairs_edge(const struct block_voxels *block, const vf whole[3], vi pairs[4])
+/* The number in the block of the word at these places in the low half of each lane, of the next
+ * word in the high half. */
+SIMD vi block_first(const vf whole[3])
 {
-	/* The index of a word in the low half of each lane, of the next word in the high half. */
 	const float both = 65537;
-	const vi first = _mm512_cvtps_epi32(vf_fma(
+	return _mm512_cvtps_epi32(vf_fma(
 		whole[2], vf_set(16 * both),
 		vf_fma(whole[1], vf_set(4 * both), vf_fma(whole[0], vf_set(both), vf_set(65536)))));
+}
+
+/* Pairs of words of four slices, two a register, in the order (y, z) = 00, 10, 01, 11. */
+SIMD void pairs_of_words(const vi words[2], vi first, vi pairs[4])
+{
 	static const int offset[4] = { 0, 4 * 65537, 16 * 65537, 20 * 65537 };
 	for (int i = 0; i < 4; i++)
-		pairs[i] = _mm512_permutex2var_epi16(
-			block->words[0], vi_add(first, vi_set(offset[i])), block->words[1]);
+		pairs[i] = _mm512_permutex2var_epi16(words[0], vi_add(first, vi_set(offset[i])),
+						     words[1]);
 }
 
 SIMD void block_pairs_wide(const struct block_voxels *block, const vf whole[3], vi pairs[4])
@@ -136,7 +142,115 @@ SIMD void block_pairs(const struct block_voxels *block, enum gz_voxel_type type,
 	if (wide)
 		block_pairs_wide(block, whole, pairs);
 	else
-		block_pairs_edge(block, whole, pairs);
+		pairs_of_words(block->words, block_first(whole), pairs);
+}
+
+/* Differences between the blocks a voxel before and after one along each axis, as words, two slices
+ * a register. */
+struct near_blocks {
+	vi along[3][2];
+	int exact; /* none is too great for a word */
+};
+
+/* Two rows of eight 8-bit voxels. */
+SIMD __m128i near_two_rows(const char *from, int64_t row)
+{
+	int64_t rows[2];
+	memcpy(&rows[0], from, sizeof rows[0]);
+	memcpy(&rows[1], from + row, sizeof rows[1]);
+	return _mm_set_epi64x(rows[1], rows[0]);
+}
+
+/* Four rows of eight 16-bit voxels, less 32768. */
+SIMD vi near_four_rows(const __m128i rows[4])
+{
+	const vi words =
+		_mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(rows[1], rows[0])),
+				   _mm256_set_m128i(rows[3], rows[2]), 1);
+	return _mm512_xor_si512(words, _mm512_set1_epi16((int16_t)0x8000));
+}
+
+/* Rows 0 to 3 of a slice as words. */
+SIMD vi near_slice(enum gz_voxel_type type, const char *from, int64_t row)
+{
+	if (type == GZ_VOXEL_U8)
+		return _mm512_cvtepu8_epi16(_mm256_set_m128i(near_two_rows(from + 2 * row, row),
+							     near_two_rows(from, row)));
+	__m128i rows[4];
+	for (int y = 0; y < 4; y++)
+		memcpy(&rows[y], from + y * row, sizeof rows[y]);
+	return near_four_rows(rows);
+}
+
+/* Rows -1 to 2 and 1 to 4 of a slice as words. */
+SIMD void near_two_slices(enum gz_voxel_type type, const char *from, int64_t row, vi *before,
+			  vi *after)
+{
+	if (type == GZ_VOXEL_U8) {
+		const __m128i middle = near_two_rows(from + row, row);
+		*before = _mm512_cvtepu8_epi16(
+			_mm256_set_m128i(middle, near_two_rows(from - row, row)));
+		*after = _mm512_cvtepu8_epi16(
+			_mm256_set_m128i(near_two_rows(from + 3 * row, row), middle));
+		return;
+	}
+	__m128i rows[6];
+	for (int y = 0; y < 6; y++)
+		memcpy(&rows[y], from + (y - 1) * row, sizeof rows[y]);
+	*before = near_four_rows(rows);
+	*after = near_four_rows(rows + 2);
+}
+
+/* The first four words of each row of two slices. */
+SIMD vi near_compact(vi slice, vi next_slice)
+{
+	const vi evens = _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14);
+	return _mm512_permutex2var_epi64(slice, evens, next_slice);
+}
+
+/* Load the blocks around one whose first voxel is at `from`; strides are in bytes. Rows are read to
+ * three voxels beyond what is needed. */
+SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t row, int64_t slice,
+			   struct near_blocks *near)
+{
+	vi x[BLOCK_EDGE], y[BLOCK_EDGE], z[BLOCK_EDGE], middle[BLOCK_EDGE + 2];
+	from -= type == GZ_VOXEL_U8 ? 1 : 2;
+	middle[0] = near_slice(type, from - slice, row);
+	middle[BLOCK_EDGE + 1] = near_slice(type, from + BLOCK_EDGE * slice, row);
+	for (int i = 0; i < BLOCK_EDGE; i++) {
+		vi before, after;
+		near_two_slices(type, from + i * slice, row, &before, &after);
+		/* rows 0 and 1 of one, 2 and 3 of the other */
+		middle[i + 1] = _mm512_shuffle_i64x2(before, after, 0x99);
+		x[i] = _mm512_subs_epi16(_mm512_bsrli_epi128(middle[i + 1], 4), middle[i + 1]);
+		y[i] = _mm512_bsrli_epi128(_mm512_subs_epi16(after, before), 2);
+	}
+	for (int i = 0; i < BLOCK_EDGE; i++)
+		z[i] = _mm512_bsrli_epi128(_mm512_subs_epi16(middle[i + 2], middle[i]), 2);
+	__mmask32 beyond = 0;
+	for (int half = 0; half < 2; half++) {
+		near->along[0][half] = near_compact(x[2 * half], x[2 * half + 1]);
+		near->along[1][half] = near_compact(y[2 * half], y[2 * half + 1]);
+		near->along[2][half] = near_compact(z[2 * half], z[2 * half + 1]);
+		for (int axis = 0; axis < 3 && type != GZ_VOXEL_U8; axis++)
+			beyond |= _mm512_cmpge_epu16_mask(_mm512_abs_epi16(near->along[axis][half]),
+							  _mm512_set1_epi16(INT16_MAX));
+	}
+	near->exact = beyond == 0;
+}
+
+/* Differences along an axis, weighted along x, in the order (y, z) = 00, 10, 01, 11. `first` is the
+ * number of the voxel before each lane's place. Returns 0 if there are none. */
+SIMD int near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, int axis, vi first,
+		      vi weights, vi rows[4])
+{
+	vi pairs[4];
+	if (type != GZ_VOXEL_U8 && !near->exact)
+		return 0;
+	pairs_of_words(near->along[axis], first, pairs);
+	for (int i = 0; i < 4; i++)
+		rows[i] = vi_sum_of_products(pairs[i], weights);
+	return 1;
 }
 
 SIMD vf block_voxel_f32(const struct block_voxels *block, vi index)

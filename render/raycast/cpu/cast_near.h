@@ -30,7 +30,7 @@ SIMD void near_nothing(struct near_voxels *near)
 /* The blocks before and after the one at base along each axis. */
 struct near_voxels {
 	vf base[3]; /* the same in all lanes; far outside at first */
-	struct block_voxels side[3][2];
+	struct near_blocks blocks;
 };
 
 SIMD void near_nothing(struct near_voxels *near)
@@ -47,16 +47,17 @@ SIMD int near_places(const struct near_voxels *near, const vf at[3], vm mask, vf
 	return block_holds(places, 0, mask);
 }
 
-/* Where a block along an axis begins, so that the places lie in it, and what follows them, too. */
+/* Where a block along an axis begins, so that the places lie in it, and what follows them, too. No
+ * place in it is closer to the rim than a voxel and rounding. */
 SIMD float near_base(const struct gz_cast *cast, int axis, const struct rays *rays, vf at, vm mask)
 {
 	const vm forward = vm_and(mask, vf_less(vf_set(0), rays->delta[axis]));
 	const float first = vm_any(forward) ? floorf(vf_least_of(at, mask))
 					    : floorf(vf_greatest_of(at, mask)) - (BLOCK_EDGE - 2);
-	return fminf(fmaxf(first, 1), cast->dims[axis] - (BLOCK_EDGE + 1));
+	return fminf(fmaxf(first, 1), cast->dims[axis] - (BLOCK_EDGE + 2));
 }
 
-/* Load the blocks around places, of which none is closer than a voxel to the rim. */
+/* Load the blocks around places. */
 SIMD void near_load(const struct gz_cast *cast, enum gz_voxel_type type, const struct rays *rays,
 		    const vf at[3], vm mask, struct near_voxels *near)
 {
@@ -68,11 +69,8 @@ SIMD void near_load(const struct gz_cast *cast, enum gz_voxel_type type, const s
 		near->base[axis] = vf_set(base);
 		from += (int64_t)base * stride[axis];
 	}
-	const char *voxels = (const char *)cast->voxels + from * bytes;
-	for (int axis = 0; axis < 3; axis++)
-		for (int side = 0; side < 2; side++)
-			block_load(type, 0, voxels + (2 * side - 1) * stride[axis] * bytes,
-				   stride[1], stride[2], &near->side[axis][side]);
+	near_load_blocks(type, (const char *)cast->voxels + from * bytes, stride[1] * bytes,
+			 stride[2] * bytes, &near->blocks);
 }
 
 /* The weighted difference of two pairs of words. Differences of 8-bit values are words, too. */
@@ -84,40 +82,44 @@ SIMD vi weigh_difference(enum gz_voxel_type type, vi before, vi after, vi weight
 }
 
 /* One component from its four rows, in the order (y, z) = 00, 10, 01, 11. */
-SIMD vf mix_differences(enum gz_voxel_type type, const vi before[4], const vi after[4], vi weights,
-			const vf share[3])
+SIMD vf mix_differences(const vi rows[4], const vf share[3])
 {
-	vf rows[4];
+	vf mixed[4];
 	for (int i = 0; i < 4; i++)
-		rows[i] = vf_from_i(weigh_difference(type, before[i], after[i], weights));
-	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]) *
+		mixed[i] = vf_from_i(rows[i]);
+	return mix(mix(mixed[0], mixed[1], share[1]), mix(mixed[2], mixed[3], share[1]), share[2]) *
 	       vf_set(1.0F / 32767);
 }
 
-/* Trilinear differences from the blocks nearby, of voxels of 8 or 16 bits. Returns 0 if no block
- * holds all places of the mask. */
+/* Trilinear differences at places in the blocks nearby, of voxels of 8 or 16 bits. Returns 0 if the
+ * blocks have none. */
+SIMD int near_mix(const struct near_voxels *near, enum gz_voxel_type type, const vf places[3],
+		  vf difference[3])
+{
+	vf whole[3], share[3];
+	block_shares(places, whole, share);
+	const vi weights = word_weights(share[0]), first = block_first(whole);
+	for (int axis = 0; axis < 3; axis++) {
+		vi rows[4];
+		if (!near_rows_of(&near->blocks, type, axis, first, weights, rows))
+			return 0;
+		difference[axis] = mix_differences(rows, share);
+	}
+	return 1;
+}
+
+/* Trilinear differences from the blocks nearby, which are loaded if others are there. Returns 0 if
+ * no block holds all places of the mask. */
 SIMD int near_differences(const struct gz_cast *cast, enum gz_voxel_type type,
 			  const struct rays *rays, struct near_voxels *near, const vf at[3],
 			  vm mask, vf difference[3])
 {
-	vf places[3], whole[3], share[3];
-	if (!near_places(near, at, mask, places)) {
-		for (int axis = 0; axis < 3; axis++)
-			if (cast->dims[axis] < BLOCK_EDGE + 2)
-				return 0;
-		near_load(cast, type, rays, at, mask, near);
-		if (!near_places(near, at, mask, places))
+	vf places[3];
+	for (int axis = 0; axis < 3; axis++)
+		if (cast->dims[axis] < BLOCK_EDGE + 3)
 			return 0;
-	}
-	block_shares(places, whole, share);
-	const vi weights = word_weights(share[0]);
-	for (int axis = 0; axis < 3; axis++) {
-		vi before[4], after[4];
-		block_pairs(&near->side[axis][0], type, 0, whole, before);
-		block_pairs(&near->side[axis][1], type, 0, whole, after);
-		difference[axis] = mix_differences(type, before, after, weights, share);
-	}
-	return 1;
+	near_load(cast, type, rays, at, mask, near);
+	return near_places(near, at, mask, places) && near_mix(near, type, places, difference);
 }
 
 /* Four voxels of a row as three pairs of words, the first voxel one before the index. */
@@ -165,8 +167,12 @@ SIMD void difference_words(const struct gz_cast *cast, enum gz_voxel_type type, 
 			after[axis][i] = pairs[1];
 		}
 	}
-	for (int axis = 0; axis < 3; axis++)
-		difference[axis] = mix_differences(type, before[axis], after[axis], weights, share);
+	for (int axis = 0; axis < 3; axis++) {
+		vi rows[4];
+		for (int i = 0; i < 4; i++)
+			rows[i] = weigh_difference(type, before[axis][i], after[axis][i], weights);
+		difference[axis] = mix_differences(rows, share);
+	}
 }
 
 #endif

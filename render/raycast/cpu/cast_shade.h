@@ -230,6 +230,17 @@ SIMD void difference_voxels(const struct gz_cast *cast, enum gz_voxel_type type,
 }
 
 #ifdef SIMD_BLOCKS
+/* Find the differences where the blocks nearby hold all places of the mask. Returns whether they
+ * do. */
+SIMD int difference_nearby(struct reading reading, const struct near_voxels *near, const vf at[3],
+			   vm mask, vf difference[3])
+{
+	vf places[3];
+	return !reading.nearest && reading.type != GZ_VOXEL_F32 &&
+	       near_places(near, at, mask, places) &&
+	       near_mix(near, reading.type, places, difference);
+}
+
 SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
 			    const struct rays *rays, struct near_voxels *near, const vf at[3],
 			    vm mask, vf difference[3])
@@ -240,6 +251,13 @@ SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
 		difference_words(cast, type, at, mask, difference);
 }
 #else
+SIMD int difference_nearby(struct reading reading, const struct near_voxels *near, const vf at[3],
+			   vm mask, vf difference[3])
+{
+	(void)reading, (void)near, (void)at, (void)mask, (void)difference;
+	return 0;
+}
+
 SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
 			    const struct rays *rays, struct near_voxels *near, const vf at[3],
 			    vm mask, vf difference[3])
@@ -249,9 +267,11 @@ SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
 }
 #endif
 
-/* The gradient at places counted from the first datum, on the way that the rays go. */
-SIMD void find_gradient(const struct gz_cast *cast, struct reading reading, const struct rays *rays,
-			struct near_voxels *near, const vf at[3], vm mask, vf gradient[3])
+/* The gradient's differences where some places of the mask may lie at the rim, or no block nearby
+ * holds them all. */
+SIMD void difference_anywhere(const struct gz_cast *cast, struct reading reading,
+			      const struct rays *rays, struct near_voxels *near, const vf at[3],
+			      vm mask, vf difference[3])
 {
 	const enum gz_voxel_type type = reading.type;
 	const int nearest = reading.nearest;
@@ -264,15 +284,23 @@ SIMD void find_gradient(const struct gz_cast *cast, struct reading reading, cons
 	const vm inside = vm_but(mask, outside);
 	const int by_voxels = !nearest && !cast->bricks.table && vm_any(inside);
 	if (by_voxels)
-		difference_inside(cast, type, rays, near, at, inside, gradient);
+		difference_inside(cast, type, rays, near, at, inside, difference);
 	if (!by_voxels || vm_any(vm_and(mask, outside))) {
 		vf samples[3];
 		difference_samples(cast, type, nearest, at, mask, samples);
 		for (int axis = 0; axis < 3; axis++)
-			gradient[axis] = by_voxels
-						 ? vf_select(outside, samples[axis], gradient[axis])
-						 : samples[axis];
+			difference[axis] =
+				by_voxels ? vf_select(outside, samples[axis], difference[axis])
+					  : samples[axis];
 	}
+}
+
+/* The gradient at places counted from the first datum, on the way that the rays go. */
+SIMD void find_gradient(const struct gz_cast *cast, struct reading reading, const struct rays *rays,
+			struct near_voxels *near, const vf at[3], vm mask, vf gradient[3])
+{
+	if (!difference_nearby(reading, near, at, mask, gradient))
+		difference_anywhere(cast, reading, rays, near, at, mask, gradient);
 	for (int axis = 0; axis < 3; axis++)
 		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
 }
@@ -379,18 +407,22 @@ SIMD vf find_arriving(const struct gz_cast *cast, const vf at[3], vm mask)
 struct lighting {
 	vf even;
 	struct shine shine;
-	struct mirrored mirrored;
+	struct mirrored mirrored; /* if anything is */
 	vf weight;
 };
 
 /* Light one channel of a colour, 0 to `full`. */
-SIMD vf shade_channel(vf colour, float full, const struct lighting *lighting, int channel)
+SIMD vf shade_channel(const struct gz_cast_light *light, vf colour, float full,
+		      const struct lighting *lighting, int channel)
 {
 	const struct shine *shine = &lighting->shine;
-	const struct mirrored *mirrored = &lighting->mirrored;
-	const vf even = colour * lighting->even;
+	vf even = colour;
+	if (light->shadow.steps)
+		even = even * lighting->even;
 	vf lit = vf_min(vf_fma(colour, shine->factor, shine->white * vf_set(full)), vf_set(full));
-	lit = lerp_lanes(lit, mirrored->seen.channel[channel] * vf_set(full), mirrored->share);
+	if (light->reflection > 0)
+		lit = lerp_lanes(lit, lighting->mirrored.seen.channel[channel] * vf_set(full),
+				 lighting->mirrored.share);
 	return vf_fma(lighting->weight, lit - even, even);
 }
 
@@ -467,9 +499,9 @@ SIMD struct colour shade(const struct gz_cast *cast, const struct rays *rays,
 	if (cast->light.gradient)
 		light_surfaces(cast, rays->view, at, sample->mask, gradient, arriving, &lighting);
 	return (struct colour) {
-		shade_channel(colour->red, 2047, &lighting, 0),
-		shade_channel(colour->green, 2047, &lighting, 1),
-		shade_channel(colour->blue, 1023, &lighting, 2),
+		shade_channel(&cast->light, colour->red, 2047, &lighting, 0),
+		shade_channel(&cast->light, colour->green, 2047, &lighting, 1),
+		shade_channel(&cast->light, colour->blue, 1023, &lighting, 2),
 	};
 }
 
