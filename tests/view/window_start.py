@@ -14,6 +14,7 @@ from picture import PATIENCE_S
 from window_case import SCENE, SIZE, WindowCase
 
 BUTTON = (36, 69, 109)  # ground of a button, about
+BAR = (36, 36, 36)  # the menu bar's ground
 SAMPLES = 25
 # Camera of the small scene, moved to its right by this: the object is on the left, or on the right.
 ASIDE = 0.65
@@ -85,6 +86,25 @@ class Start(WindowCase):
         self.assertTrue(divided)
         self.assertIn("move the mouse", self.end())
 
+    def test_first_window_leaves_the_menu_bar_free_and_lies_below_messages(self):
+        self.launch()
+        left, top = self.first_button(self.rest())
+        self.assertEqual(self.grab().at(SIZE[0] - 100, 12), BAR)
+
+        def has_message(picture, quiet):
+            """Whether there are bright letters, which no panel dims, on dark places."""
+            return 20 < sum(
+                min(picture.at(x, y)) > 150 > 100 > max(quiet.at(x, y))
+                for x in range(SIZE[0] // 2, SIZE[0] - 60)
+                for y in range(SIZE[1] - 30, SIZE[1] - 10))
+
+        for _ in range(2):
+            self.click(left - 34, top)  # beside the buttons: it gets the focus
+            quiet = self.rest()
+            self.tool("key", "k")
+            self.until(lambda p: has_message(p, quiet), "a message")
+            self.until(lambda p: not has_message(p, quiet), "no message")
+
     def test_shipped_scene_is_opened_by_its_picture(self):
         self.launch()
         empty = self.rest()
@@ -155,7 +175,7 @@ class Start(WindowCase):
         return None
 
     def test_example_study_asks_who_takes_part(self):
-        self.launch()
+        self.launch("--pictures", self.place.name)
         self.rest()
         own = self.window
         self.find("run the example study")
@@ -164,11 +184,49 @@ class Start(WindowCase):
                               "a study")[0]
         self.assertNotIn("--participant", study)
         self.assertTrue(os.path.exists(study[study.index("--experiment") + 1]))
+        # It is left before and after its first question; the first window says where answers are.
+        self.until_idle()
+        self.press("Escape")
+        self.wait_for(lambda: not self.study_runs(), "an end")
+        self.window = own
+        self.tool("windowfocus", "--sync", own)
+        self.find("run the example study")
+        self.found(than=own)
+        answers = os.path.join(self.place.name, "sub-07_task-whichwassharper_events.tsv")
+        self.wait_for(lambda: self.begin_study(answers), "a file of answers")
+        self.wait_for(lambda: self.answer_study(answers), "an answer")
+        self.wait_for(self.leave_study, "an end")
+        self.wait_for(lambda: not self.children(), "the first window to see the end")
         self.window = own
         self.viewer.terminate()
         self.viewer.wait(timeout=PATIENCE_S)
-        self.viewer.communicate()
-        self.viewer = None
+        said = self.messages()
+        self.assertEqual(said.count("its answers go to a file in " + self.place.name), 2, said)
+        self.assertEqual(said.count("the example study has ended without answers"), 1, said)
+        self.assertIn("the example study has ended; its answers are in " + answers, said)
+
+    def study_runs(self):
+        return any("--experiment" in words for words in self.children())
+
+    def begin_study(self, answers):
+        """Fill in the dialog, once it is there. -> whether the study has begun"""
+        for words in (("key", "ctrl+a"), ("type", "07"), ("key", "Return")):
+            self.tool(*words)
+            time.sleep(0.3)  # a frame of the other program
+        return os.path.exists(answers)
+
+    def answer_study(self, answers):
+        """Go on, and answer if there is a question. -> whether there is an answer"""
+        self.tool("key", "space", "1")
+        time.sleep(0.2)
+        with open(answers, encoding="utf-8") as table:
+            return len(table.readlines()) > 1
+
+    def leave_study(self):
+        """Press Escape until the study has ended."""
+        self.tool("key", "Escape")
+        time.sleep(0.2)
+        return not self.study_runs()
 
 
 if __name__ == "__main__":

@@ -120,6 +120,7 @@ size_t gz_notices_panel_draw(const struct gz_notice *notices, size_t count)
 	if (count == 0)
 		return clicked;
 	if (gz_panel_begin("##notices", &place, NULL)) {
+		gz_panel_raise();
 		for (size_t i = count; i-- > 0;) {
 			char line[LINE_SIZE];
 			print_notice(&notices[i], "", line, sizeof line);

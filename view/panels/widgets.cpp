@@ -183,7 +183,7 @@ void set_panel_place(const gz_panel_place &place, bool movable)
 	ImVec2 at(right ? room.x - margin : margin, low ? bottom : top);
 	ImVec2 pivot(right ? 1.0F : 0.0F, low ? 1.0F : 0.0F);
 	if (place.at == GZ_PANEL_MIDDLE) {
-		at = ImVec2(room.x / 2, room.y / 2);
+		at = ImVec2(room.x / 2, (place.margin_top + room.y - place.margin_bottom) / 2);
 		pivot = ImVec2(0.5F, 0.5F);
 	}
 	ImGui::SetNextWindowPos(at, movable ? ImGuiCond_Appearing : ImGuiCond_Always, pivot);
@@ -704,6 +704,12 @@ bool gz_panel_begin(const char *title, const gz_panel_place *place, bool *open)
 	const ImVec2 room = ImGui::GetIO().DisplaySize;
 	list_of(GZ_LAYER_PICTURE)->AddRectFilled(ImVec2(0, 0), room, IM_COL32(0, 0, 0, 110));
 	return begin_on_ground(title, open, flags | ImGuiWindowFlags_NoCollapse);
+}
+
+void gz_panel_raise(void)
+{
+	if (!gz_widgets_have_dialog() && !ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup))
+		ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
 }
 
 void gz_panel_end(void)

@@ -210,6 +210,9 @@ struct gz_place gz_draw_caption(enum gz_layer layer, struct gz_place at, struct 
  */
 bool gz_panel_begin(const char *title, const struct gz_panel_place *place, bool *open);
 
+/** Draw the panel that gz_panel_begin() began over all others, but not over menus and dialogs. */
+void gz_panel_raise(void);
+
 /** End the panel that gz_panel_begin() began. */
 void gz_panel_end(void);
 

@@ -1,6 +1,7 @@
 /* The part that asks who takes part before an experiment begins, if the command line does not say
  * so. It has the window to itself until then. */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -23,7 +24,17 @@ struct gz_window_experiment_start {
 	bool focused;                      /**< the first field was given the keyboard */
 	char path[GZ_PATH_SIZE];           /**< of the answers */
 	char message[128];                 /**< what is wrong; empty: nothing */
+	char place[GZ_PATH_SIZE + 32];     /**< says where answers go */
 };
+
+/* The folder or the file, from the root if it is there. */
+static void say_place(struct gz_window_experiment_start *self)
+{
+	const char *place = self->options.answers[0] ? self->options.answers : ".";
+	char *whole = realpath(place, NULL);
+	snprintf(self->place, sizeof self->place, "Answers go to %s", whole ? whole : place);
+	free(whole);
+}
 
 static enum gz_result open_start(struct gz_window *window)
 {
@@ -32,6 +43,7 @@ static enum gz_result open_start(struct gz_window *window)
 	if (!options->file[0] || options->participant[0])
 		return GZ_OK;
 	self->options = *options;
+	say_place(self);
 	window->alone = &gz_window_experiment_start_part;
 	window->picture_hidden = true;
 	const enum gz_result r = gz_experiment_load(options->file, window->log, &self->experiment);
@@ -112,6 +124,7 @@ static void draw_form(struct gz_window *window)
 	entered = draw_field("Notes", "##notes", options->notes, sizeof options->notes) || entered;
 	if (self->message[0])
 		gz_widget_text(gz_paint_amber, self->message);
+	gz_widget_text(gz_paint_plain, self->place);
 	gz_widget_separator();
 	if (gz_widget_button("Begin") || entered)
 		try_to_begin(window);

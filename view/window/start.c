@@ -1,8 +1,12 @@
 /* The part that fills a window without a scene: what can be opened, with small pictures of what was
  * shown last; and that starts a simulated viewer and the example study. */
+#include <glob.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <GLFW/glfw3.h>
@@ -45,7 +49,9 @@ struct gz_window_start {
 	struct gz_shipped_scenes scenes;
 	unsigned scene_icons[GZ_SHIPPED_SCENES_MAX]; /* as above */
 	bool scenes_read, scene_icons_made;
-	pid_t study; /* gazeview with the example study; 0: none */
+	pid_t study;                /* gazeview with the example study; 0: none */
+	time_t study_start_s;       /* the time of day at which it began */
+	char answers[GZ_PATH_SIZE]; /* absolute folder of its answers; empty: not looked up */
 };
 
 /* ---- small pictures ---- */
@@ -112,6 +118,48 @@ static void keep_small_picture(struct gz_window *window)
 
 /* ---- programs ---- */
 
+/* The folder that the study writes its answers to. */
+static const char *folder_of_answers(const struct gz_window *window)
+{
+	struct gz_window_start *self = window->start;
+	const char *folder = window->options->pictures;
+	if (self->answers[0])
+		return self->answers;
+	char *whole = realpath(folder[0] ? folder : ".", NULL);
+	snprintf(self->answers, sizeof self->answers, "%s", whole ? whole : folder);
+	free(whole);
+	return self->answers;
+}
+
+/* The newest file of answers in their folder. @return false: none is as new as the study */
+static bool find_answers(const struct gz_window *window, char path[GZ_PATH_SIZE])
+{
+	char pattern[GZ_PATH_SIZE + sizeof "/sub-*_events.tsv"];
+	time_t newest_s = window->start->study_start_s - 1;
+	glob_t found = { 0 };
+	path[0] = '\0';
+	snprintf(pattern, sizeof pattern, "%s/sub-*_events.tsv", folder_of_answers(window));
+	if (glob(pattern, 0, NULL, &found) == 0)
+		for (size_t i = 0; i < found.gl_pathc; i++) {
+			struct stat status;
+			if (stat(found.gl_pathv[i], &status) != 0 || status.st_mtime <= newest_s)
+				continue;
+			newest_s = status.st_mtime;
+			snprintf(path, GZ_PATH_SIZE, "%s", found.gl_pathv[i]);
+		}
+	globfree(&found);
+	return path[0] != '\0';
+}
+
+static void tell_study_ended(struct gz_window *window)
+{
+	char path[GZ_PATH_SIZE];
+	if (find_answers(window, path))
+		gz_info(window->log, "the example study has ended; its answers are in %s", path);
+	else
+		gz_info(window->log, "the example study has ended without answers");
+}
+
 /* In a window of its own, which asks who takes part: this one goes on behind it. */
 static void run_example_study(struct gz_window *window, int number)
 {
@@ -135,14 +183,22 @@ static void run_example_study(struct gz_window *window, int number)
 				    (char *)"--gaze",
 				    (char *)(gz_window_is_simulating(window) ? "daemon" : "mouse"),
 				    NULL };
+	self->study_start_s = time(NULL);
 	if (gz_program_start(arguments, &self->study) != GZ_OK)
 		gz_err(window->log, "%s cannot be started", program);
+	else
+		gz_info(window->log,
+			"the example study opens a window of its own; its answers go "
+			"to a file in %s",
+			folder_of_answers(window));
 }
 
 static void turn_start(struct gz_window *window)
 {
 	struct gz_window_start *self = window->start;
-	(void)gz_program_runs(&self->study);
+	const bool ran = self->study > 0;
+	if (ran && !gz_program_runs(&self->study))
+		tell_study_ended(window);
 }
 
 static double start_patience_s(const struct gz_window *window)
@@ -261,9 +317,10 @@ static void draw_scenes_left_out(const struct gz_shipped_scenes *scenes)
 	gz_widget_text(gz_paint_plain, text);
 }
 
+/* What is not about a file. */
 static void draw_start_buttons(struct gz_window *window)
 {
-	gz_widget_separator();
+	char folder[GZ_PATH_SIZE], text[GZ_PATH_SIZE + 32];
 	if (gz_widget_button(gz_window_is_simulating(window) ? "Stop the simulated viewer"
 							     : "Simulated viewer"))
 		gz_window_toggle_simulator(window);
@@ -272,11 +329,20 @@ static void draw_start_buttons(struct gz_window *window)
 	if (gz_widget_button("Run the example study"))
 		run_example_study(window, 0);
 	gz_widget_tooltip("pairs of pictures: which was sharper? Esc leaves it");
+	gz_widgets_same_line(0);
+	gz_widgets_elide(folder_of_answers(window), 0.4F, true, folder, sizeof folder);
+	snprintf(text, sizeof text, "answers go to %s", folder);
+	gz_widget_label(gz_paint_plain, text);
+	gz_widget_tooltip(folder_of_answers(window));
 }
 
 static void draw_start(struct gz_window *window, const struct gz_window_gaze *gaze)
 {
-	static const struct gz_panel_place place = { .at = GZ_PANEL_MIDDLE, .width = WIDTH };
+	const struct gz_panel_place place = {
+		.at = GZ_PANEL_MIDDLE,
+		.width = WIDTH,
+		.margin_top = window->panels_top,
+	};
 	bool open = false, effect = false;
 	const char *recent = NULL, *scene = NULL;
 	(void)gaze;
@@ -289,10 +355,10 @@ static void draw_start(struct gz_window *window, const struct gz_window_gaze *ga
 		open = gz_widget_button("Open...");
 		gz_widgets_same_line(0);
 		gz_widget_label(gz_paint_plain, "or drop a volume or a scene here");
+		draw_start_buttons(window);
 		recent = draw_recent_rows(window);
 		scene = draw_shipped_scenes(window->start);
 		draw_scenes_left_out(&window->start->scenes);
-		draw_start_buttons(window);
 	}
 	gz_panel_end();
 	if (effect)
