@@ -122,7 +122,7 @@ struct slope_sums {
 	double p[3], tp[3];
 };
 
-static void add_to_slope(struct slope_sums *line, double t, const double p[3])
+static inline void add_to_slope(struct slope_sums *line, double t, const double p[3])
 {
 	line->count++;
 	line->t += t;
@@ -501,15 +501,13 @@ static void emit_certain_labels(struct gz_classify_state *state,
 	}
 }
 
-struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
-					   const struct gz_classify_params *params,
-					   const struct gz_display *display,
-					   const struct gz_classify_input *input)
+void gz_classify_step(struct gz_classify_state *state, const struct gz_classify_params *params,
+		      const struct gz_display *display, const struct gz_classify_input *input,
+		      struct gz_classify_output *out)
 {
-	struct gz_classify_output out;
-	out.last_valid_ns = state->valid_ns;
-	out.velocity_deg_s = 0;
-	out.final_count = 0; /* entries beyond this are not read, so they stay unset */
+	out->last_valid_ns = state->valid_ns;
+	out->velocity_deg_s = 0;
+	out->final_count = 0; /* entries beyond this are not read, so they stay unset */
 	struct gz_classify_entry *entry = add_entry(state, params, display, input);
 	if (entry->lid)
 		mark_covered_samples(state, input->lid_since_ns);
@@ -517,35 +515,32 @@ struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
 		ask_forests(state, params, display, input);
 	bool good = gz_classify_is_good(params, entry);
 	entry->after_loss = entry->after_loss && good;
-	out.resumed = entry->after_loss && state->any_valid && state->lost;
+	out->resumed = entry->after_loss && state->any_valid && state->lost;
 	if (good) {
 		state->lost = false;
-		double speed_deg_s = trailing_speed(state, params, &out.velocity_deg_s);
+		double speed_deg_s = trailing_speed(state, params, &out->velocity_deg_s);
 		update_quick_saccade(state, params, entry, speed_deg_s);
 		state->any_valid = true;
 		state->valid_ns = entry->time_ns;
 	}
 	if (params->source != GZ_CLASSIFY_LEARNED)
 		measure_speeds(state, params, state->count, false);
-	emit_certain_labels(state, params, false, &out);
+	emit_certain_labels(state, params, false, out);
 	state->now = immediate_label(state, params, entry);
 	if (entry->still_scene && state->now == GZ_EVENT_PURSUIT)
 		state->now = GZ_EVENT_FIXATION; /* the label before a dropout */
-	if (out.final_count > 0 && out.final[out.final_count - 1].seq == entry->seq)
-		state->now = out.final[out.final_count - 1].event;
-	out.event = state->now;
-	return out;
+	if (out->final_count > 0 && out->final[out->final_count - 1].seq == entry->seq)
+		state->now = out->final[out->final_count - 1].event;
+	out->event = state->now;
 }
 
-struct gz_classify_output gz_classify_flush(struct gz_classify_state *state,
-					    const struct gz_classify_params *params)
+void gz_classify_flush(struct gz_classify_state *state, const struct gz_classify_params *params,
+		       struct gz_classify_output *out)
 {
-	struct gz_classify_output out;
-	out.event = state->now;
-	out.velocity_deg_s = 0;
-	out.resumed = false;
-	out.last_valid_ns = state->valid_ns;
-	out.final_count = 0;
-	emit_certain_labels(state, params, true, &out);
-	return out;
+	out->event = state->now;
+	out->velocity_deg_s = 0;
+	out->resumed = false;
+	out->last_valid_ns = state->valid_ns;
+	out->final_count = 0;
+	emit_certain_labels(state, params, true, out);
 }

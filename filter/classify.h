@@ -228,21 +228,21 @@ struct gz_classify_output {
 /**
  * Label one sample.
  *
- * @param display  passes gz_display_valid()
+ * @param display   passes gz_display_valid()
+ * @param[out] out  always filled, except final[] beyond final_count
  */
-struct gz_classify_output gz_classify_step(struct gz_classify_state *state,
-					   const struct gz_classify_params *params,
-					   const struct gz_display *display,
-					   const struct gz_classify_input *input);
+void gz_classify_step(struct gz_classify_state *state, const struct gz_classify_params *params,
+		      const struct gz_display *display, const struct gz_classify_input *input,
+		      struct gz_classify_output *out);
 
 /**
  * Make labels certain that wait for later samples, because none will come. Call it until it gives
  * no more; then only zero-initialising the state starts again.
  *
- * @return final_count and final as from a step; 0: every sample has its certain label. The other
- *         fields are those of the newest sample, resumed false
+ * @param[out] out  final_count and final as from a step; 0: every sample has its certain label. The
+ *                  other fields are those of the newest sample, resumed false
  */
-struct gz_classify_output gz_classify_flush(struct gz_classify_state *state,
-					    const struct gz_classify_params *params);
+void gz_classify_flush(struct gz_classify_state *state, const struct gz_classify_params *params,
+		       struct gz_classify_output *out);
 
 #endif

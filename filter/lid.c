@@ -85,15 +85,16 @@ static bool moves_across(const struct gz_display *display, const struct gz_lid_e
  * newest one itself if there is none. */
 static uint64_t window_begin(struct gz_lid_state *state)
 {
-	uint64_t newest = state->count - 1, at = newest;
-	uint64_t oldest = state->count > GZ_LID_RING ? state->count - GZ_LID_RING : 0;
-	int64_t now_ns = lid_entry(state, newest)->time_ns;
-	while (at > oldest && now_ns - lid_entry(state, at - 1)->time_ns <= WINDOW_NS)
-		at--;
-	if (at == newest && at > oldest &&
-	    now_ns - lid_entry(state, at - 1)->time_ns <= STEP_MAX_NS)
-		at--;
-	return at;
+	const uint64_t newest = state->count - 1;
+	const int64_t now_ns = lid_entry(state, newest)->time_ns;
+	if (state->count > state->oldest + GZ_LID_RING)
+		state->oldest = state->count - GZ_LID_RING;
+	while (now_ns - lid_entry(state, state->oldest)->time_ns > WINDOW_NS)
+		state->oldest++;
+	const bool alone = state->oldest == newest && newest > 0;
+	if (alone && now_ns - lid_entry(state, newest - 1)->time_ns <= STEP_MAX_NS)
+		return newest - 1;
+	return state->oldest;
 }
 
 /* When the change to the newest sample began: after the last sample that is as the first of the

@@ -47,7 +47,8 @@ struct gz_lid_entry {
 /** State of this step. Zero-initialised is the start state: the lid is open. Plain data. */
 struct gz_lid_state {
 	struct gz_lid_entry ring[GZ_LID_RING];
-	uint64_t count; /**< samples taken */
+	uint64_t count;  /**< samples taken */
+	uint64_t oldest; /**< of them, the oldest one within the window of the newest */
 	struct gz_median usual[GZ_LID_MEASURES];
 	struct gz_median noise[GZ_LID_MEASURES]; /**< usual change within the window, of usual */
 	int64_t measured_ns;                     /**< when something was measured last */

@@ -298,8 +298,8 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 
 	struct gz_classify_input input =
 		reduce_sample(pipeline, &corrected, &valid, &out->gaze.raw);
-	struct gz_classify_output label =
-		gz_classify_step(&pipeline->classify, &params->classify, display, &input);
+	struct gz_classify_output label;
+	gz_classify_step(&pipeline->classify, &params->classify, display, &input, &label);
 	make_messages(pipeline, &label, &input, out);
 	set_gaze_label(&label, &out->gaze);
 	const struct gz_landing_input landing_input = { label.event, input.time_ns, input.valid,
@@ -324,8 +324,8 @@ void gz_pipeline_step(struct gz_pipeline *pipeline, const struct gz_sample *samp
 
 bool gz_pipeline_flush(struct gz_pipeline *pipeline, struct gz_gaze *out)
 {
-	struct gz_classify_output label =
-		gz_classify_flush(&pipeline->classify, &pipeline->params.classify);
+	struct gz_classify_output label;
+	gz_classify_flush(&pipeline->classify, &pipeline->params.classify, &label);
 	if (label.final_count == 0)
 		return false;
 	*out = (struct gz_gaze) { .host_ns = pipeline->host_ns };

@@ -188,6 +188,17 @@ static double length2(const double v[2])
 	return sqrt(v[0] * v[0] + v[1] * v[1]);
 }
 
+/* As fmin() and fmax() for numbers that are not NaN, without a call. */
+static inline double lesser(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+static inline double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
 /* Nearest integer. */
 static int64_t nearest(double x)
 {
@@ -245,18 +256,17 @@ static void add_to_sums(struct gz_movement_entry *entry)
 	}
 }
 
-/* Advance each cursor to the newest sample that is so long ago; to the oldest if none is. */
-static void advance_cursors(struct gz_movement *state)
+/* Advance the cursor of a look to the newest sample that is so long ago; to the oldest if none is.
+ */
+static void advance_cursor(struct gz_movement *state, int look)
 {
 	uint64_t newest = state->count - 1;
 	uint64_t oldest = newest >= GZ_MOVEMENT_RING ? newest - GZ_MOVEMENT_RING + 1 : 0;
-	int64_t now_us = entry_at(state, newest)->time_us;
-	for (int k = 0; k < GZ_MOVEMENT_LOOKS; k++) {
-		uint64_t at = state->cursor[k] < oldest ? oldest : state->cursor[k];
-		while (at < newest && entry_at(state, at + 1)->time_us <= now_us - LOOK_US[k])
-			at++;
-		state->cursor[k] = at;
-	}
+	uint64_t at = state->cursor[look] < oldest ? oldest : state->cursor[look];
+	const int64_t until_us = entry_at(state, newest)->time_us - LOOK_US[look];
+	while (at < newest && entry_at(state, at + 1)->time_us <= until_us)
+		at++;
+	state->cursor[look] = at;
 }
 
 /* Where the eye was a look back ago, degrees. */
@@ -289,7 +299,9 @@ struct window_sums {
 	double squares;
 };
 
-static struct window_sums sums_since(struct gz_movement *state, uint64_t index)
+/* Inlined, so that sums that a caller does not read are not computed. */
+static inline __attribute__((always_inline)) struct window_sums sums_since(
+	struct gz_movement *state, uint64_t index)
 {
 	const struct gz_movement_entry *a = entry_at(state, index);
 	const struct gz_movement_entry *b = entry_at(state, state->count - 1);
@@ -316,7 +328,7 @@ static double spread_of(const struct window_sums *sums)
 	if (sums->count < 2)
 		return 0;
 	double mean2 = (sums->p[0] * sums->p[0] + sums->p[1] * sums->p[1]) / sums->count;
-	return DEG_PER_UNIT * sqrt(fmax(0, sums->squares - mean2) / sums->count);
+	return DEG_PER_UNIT * sqrt(greater(0, sums->squares - mean2) / sums->count);
 }
 
 /* The straight line through the samples. */
@@ -332,7 +344,7 @@ static void fit_line(const struct window_sums *sums, struct gz_movement_stretch 
 		out->slope[i] = DEG_PER_UNIT * 1e6 * tp / tt;
 		rest -= sums->p[i] * sums->p[i] / n + tp * tp / tt;
 	}
-	out->residual_deg = DEG_PER_UNIT * sqrt(fmax(0, rest) / n);
+	out->residual_deg = DEG_PER_UNIT * sqrt(greater(0, rest) / n);
 }
 
 /*
@@ -398,7 +410,7 @@ static void follow_noise(struct gz_movement *state, double speed_deg_s, double s
 	if (!(speed_deg_s > 0))
 		return;
 	state->noise_count++;
-	double step = fmin(0.5, fmax(step_s / NOISE_S, 2 / state->noise_count));
+	double step = lesser(0.5, greater(step_s / NOISE_S, 2 / state->noise_count));
 	if (state->noise_count < 2)
 		state->noise_deg_s = speed_deg_s;
 	else if (speed_deg_s > state->noise_deg_s)
@@ -475,7 +487,7 @@ static void follow_means(struct gz_movement *state, bool lost, bool burst_begins
 	double elapsed_s = (double)entry_at(state, state->count - 1)->time_us * 1e-6;
 	for (int i = 0; i < GZ_MOVEMENT_MEANS; i++) {
 		struct gz_movement_mean *mean = &state->mean[i];
-		double over_s = fmin(MEAN_S[i], elapsed_s + MEAN_LEAST_S);
+		double over_s = lesser(MEAN_S[i], elapsed_s + MEAN_LEAST_S);
 		double gain = step_s / (over_s + step_s);
 		mean->lost += gain * ((lost ? 1 : 0) - mean->lost);
 		mean->bursts_s -= gain * mean->bursts_s;
@@ -507,7 +519,7 @@ static double cosine_of(const double a[2], const double b[2], double small)
 
 static double capped_ms(int64_t us)
 {
-	return fmin((double)us * 1e-3, TIME_MAX_MS);
+	return lesser((double)us * 1e-3, TIME_MAX_MS);
 }
 
 /* Places at the times to which the features look back, degrees. */
@@ -555,7 +567,7 @@ static void put_windows(struct gz_movement *state, const struct places *places,
 		put(row, spread_of(&sums));
 		put(row, distance / (noise + SMALL_DEG));
 		put(row,
-		    fmin(1, (double)(newest->lost_us - first->lost_us) / (double)LOOK_US[look]));
+		    lesser(1, (double)(newest->lost_us - first->lost_us) / (double)LOOK_US[look]));
 	}
 	static const int looks[] = { 1, 3, 8, 10 };
 	for (int k = 0; k < 4; k++) {
@@ -582,7 +594,7 @@ static void put_burst(struct gz_movement *state, double speed_deg_s, struct feat
 	put(row, state->noise_deg_s);
 	put(row, burst->any ? capped_ms(now_us - burst->end_us) : TIME_MAX_MS);
 	put(row, state->any_lost ? capped_ms(now_us - state->lost_us) : TIME_MAX_MS);
-	put(row, state->any_lost ? fmin((double)state->loss_ms, TIME_MAX_MS) : 0);
+	put(row, state->any_lost ? lesser((double)state->loss_ms, TIME_MAX_MS) : 0);
 	double away[2] = { burst->to[0] - burst->from[0], burst->to[1] - burst->from[1] };
 	double distance = length2(away);
 	put(row, burst->peak_deg_s);
@@ -630,9 +642,9 @@ static void put_edges(const struct gz_display *display, const double here[2],
 {
 	double corner[2];
 	place_of(display, (struct gz_point) { 1, 0.5f }, corner);
-	put(row, fmax(-3, fmin(3, fabs(here[0]) - corner[0])));
+	put(row, greater(-3, lesser(3, fabs(here[0]) - corner[0])));
 	place_of(display, (struct gz_point) { 0.5f, 1 }, corner);
-	put(row, fmax(-3, fmin(3, fabs(here[1]) - corner[1])));
+	put(row, greater(-3, lesser(3, fabs(here[1]) - corner[1])));
 }
 
 static void put_features(struct gz_movement *state, const struct gz_display *display,
@@ -657,18 +669,19 @@ bool gz_movement_step(struct gz_movement *state, const struct gz_display *displa
 		memset(out_features, 0, GZ_MOVEMENT_FEATURES * sizeof out_features[0]);
 	struct gz_movement_entry *entry = add_movement_entry(state, display, input, &step_s);
 	state->any_valid = state->any_valid || input->valid;
-	advance_cursors(state);
+	/* Without features, only these are needed; the others catch up later. */
+	advance_cursor(state, 0);
+	advance_cursor(state, LONGEST);
 	if (!state->any_valid)
 		return false;
 	struct places places;
 	for (int i = 0; i < 2; i++)
 		places.now[i] = DEG_PER_UNIT * (double)entry->place[i];
-	for (int k = 0; k < GZ_MOVEMENT_LOOKS; k++)
-		place_ago(state, k, places.ago[k]);
+	place_ago(state, 0, places.ago[0]);
 	double tick[2] = { places.now[0] - places.ago[0][0], places.now[1] - places.ago[0][1] };
 	double speed_deg_s = length2(tick) * TICKS_PER_S;
 	entry->path += (uint64_t)nearest(speed_deg_s * step_s * UNITS_PER_DEG);
-	bool fast = speed_deg_s > fmax(FAST_DEG_S, FAST_FACTOR * state->noise_deg_s);
+	bool fast = speed_deg_s > greater(FAST_DEG_S, FAST_FACTOR * state->noise_deg_s);
 	bool begins =
 		fast && follow_burst(state, entry->time_us, places.now, places.ago[0], speed_deg_s);
 	if (!fast && input->valid)
@@ -676,7 +689,12 @@ bool gz_movement_step(struct gz_movement *state, const struct gz_display *displa
 	follow_stretch(state, entry->time_us, fast || !input->valid);
 	follow_means(state, !input->valid, begins, step_s);
 	follow_flows(state, step_s);
-	if (out_features)
-		put_features(state, display, &places, speed_deg_s, out_features);
+	if (!out_features)
+		return true;
+	for (int k = 1; k < GZ_MOVEMENT_LOOKS; k++) {
+		advance_cursor(state, k);
+		place_ago(state, k, places.ago[k]);
+	}
+	put_features(state, display, &places, speed_deg_s, out_features);
 	return true;
 }

@@ -233,6 +233,7 @@ static void forests_are_not_asked_more_often_than_they_learned(void **state)
 {
 	(void)state;
 	static struct gz_classify_state classify;
+	struct gz_classify_output out;
 	const struct gz_classify_params params = gz_pipeline_default_params().classify;
 	const struct gz_display display = wide_display();
 	for (int i = 0; i < RATE_COUNT; i++) {
@@ -249,7 +250,7 @@ static void forests_are_not_asked_more_often_than_they_learned(void **state)
 				.point = { 0.5F, 0.5F },
 				.confidence = 1,
 			};
-			(void)gz_classify_step(&classify, &params, &display, &input);
+			gz_classify_step(&classify, &params, &display, &input, &out);
 			bool now = classify.asked_ns == time_ns;
 			if (k == 0 || k == samples / 2 + 1)
 				assert_true(now);
@@ -268,6 +269,7 @@ static void certain_labels_of_a_calm_eye_are_asked_for_seldom(void **state)
 {
 	(void)state;
 	static struct gz_classify_state classify;
+	struct gz_classify_output out;
 	const struct gz_classify_params params = gz_pipeline_default_params().classify;
 	const struct gz_display display = wide_display();
 	struct gz_random random = gz_random_seeded(7, 7);
@@ -286,7 +288,7 @@ static void certain_labels_of_a_calm_eye_are_asked_for_seldom(void **state)
 			.point = { x, 0.5F },
 			.confidence = 1,
 		};
-		(void)gz_classify_step(&classify, &params, &display, &input);
+		gz_classify_step(&classify, &params, &display, &input, &out);
 		int *asked = k >= 300 && k < 600 ? calm : lively;
 		if (k < 300 || k >= 620 + 60)
 			continue;
