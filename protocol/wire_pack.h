@@ -19,6 +19,79 @@
 /* Only where a call is inlined are its key and its size constants. */
 #define GZ_PACK_INLINE static inline __attribute__((always_inline))
 
+/*
+ * Each gz_put_ function writes at @p to, where there must be room, and returns where the next piece
+ * goes. Pieces of a message that is known to fit are written without looking for room before each.
+ */
+
+/** A format and a number of @p size bytes, which is a constant for each caller. */
+GZ_PACK_INLINE unsigned char *gz_put_number(unsigned char *to, unsigned char format, uint64_t value,
+					    size_t size)
+{
+	value = htobe64(value);
+	*to = format;
+	memcpy(to + 1, (const unsigned char *)&value + sizeof value - size, size);
+	return to + 1 + size;
+}
+
+/** Text of less than 32 bytes, such as a key. */
+GZ_PACK_INLINE unsigned char *gz_put_short_text(unsigned char *to, const char *text)
+{
+	const size_t length = strlen(text);
+	*to = (unsigned char)(0xa0 | length);
+	memcpy(to + 1, text, length);
+	return to + 1 + length;
+}
+
+GZ_PACK_INLINE unsigned char *gz_put_nil(unsigned char *to)
+{
+	*to = 0xc0;
+	return to + 1;
+}
+
+GZ_PACK_INLINE unsigned char *gz_put_bool(unsigned char *to, bool value)
+{
+	*to = value ? 0xc3 : 0xc2;
+	return to + 1;
+}
+
+/** A map of less than 16 pairs. */
+GZ_PACK_INLINE unsigned char *gz_put_small_map(unsigned char *to, size_t pairs)
+{
+	*to = (unsigned char)(0x80 | pairs);
+	return to + 1;
+}
+
+/** An array of less than 16 elements. */
+GZ_PACK_INLINE unsigned char *gz_put_small_array(unsigned char *to, size_t elements)
+{
+	*to = (unsigned char)(0x90 | elements);
+	return to + 1;
+}
+
+/** A real; nil if it is not finite. */
+GZ_PACK_INLINE unsigned char *gz_put_float(unsigned char *to, float value)
+{
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	return isfinite(value) ? gz_put_number(to, 0xca, bits, 4) : gz_put_nil(to);
+}
+
+/** A real; nil if it is not finite. */
+GZ_PACK_INLINE unsigned char *gz_put_double(unsigned char *to, double value)
+{
+	uint64_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	return isfinite(value) ? gz_put_number(to, 0xcb, bits, 8) : gz_put_nil(to);
+}
+
+/** Most bytes that an integer takes. */
+#define GZ_PUT_INT_SIZE 9
+
+/** An integer in its shortest form. */
+unsigned char *gz_put_uint(unsigned char *to, uint64_t value);
+unsigned char *gz_put_int(unsigned char *to, int64_t value);
+
 /** A message being packed. */
 struct gz_pack {
 	struct gz_wire_message *message;
@@ -57,11 +130,7 @@ GZ_PACK_INLINE unsigned char *gz_pack_keyed_room(struct gz_pack *pack, const cha
 		return gz_pack_room(pack, size);
 	}
 	unsigned char *room = gz_pack_room(pack, 1 + length + size);
-	if (!room)
-		return NULL;
-	*room = (unsigned char)(0xa0 | length);
-	memcpy(room + 1, key, length);
-	return room + 1 + length;
+	return room ? gz_put_short_text(room, key) : NULL;
 }
 
 /** A key, and a value that is one byte. */
@@ -77,11 +146,8 @@ GZ_PACK_INLINE void gz_pack_number(struct gz_pack *pack, const char *key, unsign
 				   uint64_t value, size_t size)
 {
 	unsigned char *room = gz_pack_keyed_room(pack, key, 1 + size);
-	if (!room)
-		return;
-	value = htobe64(value);
-	*room = format;
-	memcpy(room + 1, (const unsigned char *)&value + sizeof value - size, size);
+	if (room)
+		gz_put_number(room, format, value, size);
 }
 
 GZ_PACK_INLINE void gz_pack_map(struct gz_pack *pack, const char *key, size_t pairs)
@@ -112,12 +178,6 @@ GZ_PACK_INLINE void gz_pack_nil(struct gz_pack *pack, const char *key)
 GZ_PACK_INLINE void gz_pack_bool(struct gz_pack *pack, const char *key, bool value)
 {
 	gz_pack_byte(pack, key, value ? 0xc3 : 0xc2);
-}
-
-/** Pack an integer in 9 bytes, whatever its value. */
-GZ_PACK_INLINE void gz_pack_fixed_int64(struct gz_pack *pack, const char *key, int64_t value)
-{
-	gz_pack_number(pack, key, 0xd3, (uint64_t)value, 8);
 }
 
 GZ_PACK_INLINE void gz_pack_float(struct gz_pack *pack, const char *key, float value)

@@ -68,40 +68,57 @@ void gz_pack_text(struct gz_pack *pack, const char *key, const char *text)
 	append_bytes(pack, text, good);
 }
 
-static void pack_negative(struct gz_pack *pack, const char *key, int64_t value)
+static unsigned char *put_negative(unsigned char *to, int64_t value)
 {
-	if (value >= -32)
-		gz_pack_byte(pack, key, 0xff & (unsigned)value);
-	else if (value >= INT8_MIN)
-		gz_pack_number(pack, key, 0xd0, (uint64_t)value, 1);
-	else if (value >= INT16_MIN)
-		gz_pack_number(pack, key, 0xd1, (uint64_t)value, 2);
-	else if (value >= INT32_MIN)
-		gz_pack_number(pack, key, 0xd2, (uint64_t)value, 4);
-	else
-		gz_pack_number(pack, key, 0xd3, (uint64_t)value, 8);
+	if (value >= INT8_MIN)
+		return gz_put_number(to, 0xd0, (uint64_t)value, 1);
+	if (value >= INT16_MIN)
+		return gz_put_number(to, 0xd1, (uint64_t)value, 2);
+	if (value >= INT32_MIN)
+		return gz_put_number(to, 0xd2, (uint64_t)value, 4);
+	return gz_put_number(to, 0xd3, (uint64_t)value, 8);
+}
+
+unsigned char *gz_put_int(unsigned char *to, int64_t value)
+{
+	if (value >= 0)
+		return gz_put_uint(to, (uint64_t)value);
+	if (value < -32)
+		return put_negative(to, value);
+	*to = (unsigned char)value;
+	return to + 1;
+}
+
+unsigned char *gz_put_uint(unsigned char *to, uint64_t value)
+{
+	if (value > UINT32_MAX)
+		return gz_put_number(to, 0xcf, value, 8);
+	if (value > UINT16_MAX)
+		return gz_put_number(to, 0xce, value, 4);
+	if (value > UINT8_MAX)
+		return gz_put_number(to, 0xcd, value, 2);
+	if (value >= 0x80)
+		return gz_put_number(to, 0xcc, value, 1);
+	*to = (unsigned char)value;
+	return to + 1;
 }
 
 void gz_pack_int(struct gz_pack *pack, const char *key, int64_t value)
 {
-	if (value < 0)
-		pack_negative(pack, key, value);
-	else
-		gz_pack_uint(pack, key, (uint64_t)value);
+	unsigned char bytes[GZ_PUT_INT_SIZE];
+	const size_t size = (size_t)(gz_put_int(bytes, value) - bytes);
+	unsigned char *room = gz_pack_keyed_room(pack, key, size);
+	if (room)
+		memcpy(room, bytes, size);
 }
 
 void gz_pack_uint(struct gz_pack *pack, const char *key, uint64_t value)
 {
-	if (value < 0x80)
-		gz_pack_byte(pack, key, (unsigned)value);
-	else if (value <= UINT8_MAX)
-		gz_pack_number(pack, key, 0xcc, value, 1);
-	else if (value <= UINT16_MAX)
-		gz_pack_number(pack, key, 0xcd, value, 2);
-	else if (value <= UINT32_MAX)
-		gz_pack_number(pack, key, 0xce, value, 4);
-	else
-		gz_pack_number(pack, key, 0xcf, value, 8);
+	unsigned char bytes[GZ_PUT_INT_SIZE];
+	const size_t size = (size_t)(gz_put_uint(bytes, value) - bytes);
+	unsigned char *room = gz_pack_keyed_room(pack, key, size);
+	if (room)
+		memcpy(room, bytes, size);
 }
 
 void gz_pack_doubles(struct gz_pack *pack, const char *key, const double *values, size_t count)

@@ -137,19 +137,30 @@ static void put_word(struct gz_board *board, uint64_t position, uint64_t word)
 	atomic_store_explicit(&board->words[position & board->mask], word, memory_order_release);
 }
 
+/* Store @p count words that lie side by side. */
+static void put_words(board_word *to, const unsigned char *from, size_t count)
+{
+#pragma GCC unroll 8
+	for (size_t i = 0; i < count; i++) {
+		uint64_t word;
+		memcpy(&word, from + 8 * i, 8);
+		atomic_store_explicit(&to[i], word, memory_order_release);
+	}
+}
+
 /* @return the position behind the bytes, which are filled up with zeros to whole words */
 static uint64_t put_bytes(struct gz_board *board, uint64_t position, const void *bytes, size_t size)
 {
 	const unsigned char *from = bytes;
-	size_t whole = size / 8;
-	uint64_t word;
-	for (size_t i = 0; i < whole; i++) {
-		memcpy(&word, from + 8 * i, 8);
-		put_word(board, position++, word);
-	}
+	const size_t whole = size / 8, place = position & board->mask;
+	const size_t before_end = board->mask + 1 - place;
+	const size_t first = whole < before_end ? whole : before_end;
+	uint64_t word = 0;
+	put_words(board->words + place, from, first);
+	put_words(board->words, from + 8 * first, whole - first);
+	position += whole;
 	if (size % 8 == 0)
 		return position;
-	word = 0;
 	memcpy(&word, from + 8 * whole, size % 8);
 	put_word(board, position, word);
 	return position + 1;

@@ -558,7 +558,7 @@ static void longest_messages_fit(void **state)
 
 	struct gz_gaze gaze = sample_gaze();
 	gaze.seq = gaze.final_seq = UINT64_MAX;
-	gaze.event = gaze.final_event = GZ_EVENT_FIXATION;
+	gaze.event = gaze.final_event = GZ_EVENT_OSCILLATION;
 	gaze.device_ns = gaze.host_ns = gaze.publish_ns = INT64_MIN + 1;
 	for (int i = 0; i < GZ_EYE_COUNT; i++)
 		memset(gaze.eye[i].direction, 0, sizeof gaze.eye[i].direction);
