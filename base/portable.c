@@ -20,6 +20,8 @@ double gz_portable_log(double x)
 	}
 	double s = (m - 1) / (m + 1);
 	double square = s * s, sum = 0;
+	/* Unrolled, the factors of the series are constants. */
+#pragma GCC unroll 14
 	for (int k = 27; k >= 1; k -= 2)
 		sum = sum * square + 1.0 / k;
 	return exponent * LN2_HIGH + (exponent * LN2_LOW + 2 * s * sum);
@@ -31,15 +33,17 @@ double gz_portable_exp(double x)
 	double k = floor(x / (LN2_HIGH + LN2_LOW) + 0.5);
 	double r = (x - k * LN2_HIGH) - k * LN2_LOW;
 	double sum = 1;
+#pragma GCC unroll 17
 	for (int n = 17; n >= 1; n--)
 		sum = 1 + sum * r / n;
 	return ldexp(sum, (int)k);
 }
 
 /** Taylor series of sine (first = 1) or cosine (first = 0) for |r| <= pi / 4. */
-static double sine_series(double r, int first)
+static inline double sine_series(double r, int first)
 {
 	double sum = 1;
+#pragma GCC unroll 9
 	for (int n = 18 + first; n > first; n -= 2)
 		sum = 1 - sum * r * r / ((double)n * (n - 1));
 	return first ? sum * r : sum;
@@ -51,7 +55,7 @@ static double sine_shifted(double angle, int quarter_turns)
 	double k = floor(angle / (HALF_PI_HIGH + HALF_PI_LOW) + 0.5);
 	double r = (angle - k * HALF_PI_HIGH) - k * HALF_PI_LOW;
 	int quadrant = (int)((int64_t)k + quarter_turns) & 3;
-	double value = sine_series(r, quadrant & 1 ? 0 : 1);
+	double value = quadrant & 1 ? sine_series(r, 0) : sine_series(r, 1);
 	return quadrant & 2 ? -value : value;
 }
 
@@ -71,6 +75,7 @@ static double arc_tangent(double t)
 	for (int i = 0; i < 2; i++)
 		t /= 1 + sqrt(1 + t * t);
 	double square = t * t, sum = 0;
+#pragma GCC unroll 14
 	for (int k = 27; k >= 1; k -= 2)
 		sum = 1.0 / k - sum * square;
 	return 4 * t * sum;

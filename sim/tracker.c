@@ -295,11 +295,11 @@ static void set_eye_geometry(const struct gz_display *display, int index, struct
 	}
 }
 
-static double pupil_at(struct gz_sim_tracker *tracker, double since_s)
+/* The diameter of both pupils, without noise. */
+static double pupil_at(double since_s)
 {
 	double turns = PUPIL_SWING_HZ * since_s;
-	return PUPIL_MM + PUPIL_SWING_MM * gz_portable_sin(TWO_PI * (turns - floor(turns))) +
-	       PUPIL_NOISE_MM * gz_random_normal(&tracker->noise);
+	return PUPIL_MM + PUPIL_SWING_MM * gz_portable_sin(TWO_PI * (turns - floor(turns)));
 }
 
 /* The part of the pupil's height that the lid leaves. */
@@ -309,28 +309,35 @@ static double uncovered_part(double lid)
 	return 1 - fmax(0, fmin(1, covered));
 }
 
+/* What both eyes have in common. */
+struct eyes_truth {
+	struct gz_point point;
+	double spike_deg[2];
+	double pupil_mm;
+	double part; /* of the pupil's height that is not covered */
+};
+
 /* Measure one eye. If it is not @p seen, the same random numbers are drawn but nothing is measured.
- * @param part  of the pupil's height that is not covered */
-static void measure_eye(struct gz_sim_tracker *tracker, int index, struct gz_point truth,
-			const double spike_deg[2], double part, bool seen,
-			struct gz_eye_sample *eye)
+ */
+static void measure_eye(struct gz_sim_tracker *tracker, int index, const struct eyes_truth *truth,
+			bool seen, struct gz_eye_sample *eye)
 {
 	double offset_deg[2];
 	for (int axis = 0; axis < 2; axis++)
-		offset_deg[axis] = tracker->offset_deg[index][axis] + spike_deg[axis] +
+		offset_deg[axis] = tracker->offset_deg[index][axis] + truth->spike_deg[axis] +
 				   tracker->params.noise_deg * gz_random_normal(&tracker->noise);
-	double pupil_mm = pupil_at(tracker, gz_ns_to_s(tracker->newest_ns - tracker->start_ns));
+	double pupil_mm = truth->pupil_mm + PUPIL_NOISE_MM * gz_random_normal(&tracker->noise);
 	if (!seen) {
 		eye->confidence = 0;
 		return;
 	}
 	eye->valid = true;
 	eye->confidence = 1;
-	offset_deg[1] += LID_SHIFT_DEG * (1 - part);
+	offset_deg[1] += LID_SHIFT_DEG * (1 - truth->part);
 	/* The mean of its width and its height. */
-	eye->pupil_mm = (float)(pupil_mm * (1 + part) / 2);
-	eye->point = apply_calibration(&tracker->params,
-				       add_angular_offset(&tracker->display, truth, offset_deg));
+	eye->pupil_mm = (float)(pupil_mm * (1 + truth->part) / 2);
+	eye->point = apply_calibration(
+		&tracker->params, add_angular_offset(&tracker->display, truth->point, offset_deg));
 	set_eye_geometry(&tracker->display, index, eye);
 }
 
@@ -355,12 +362,15 @@ static void measure_sample(struct gz_sim_tracker *tracker, const struct gz_viewe
 {
 	double part = tracker->params.lids ? uncovered_part(truth->lid) : 1;
 	bool open = tracker->params.lids ? part >= LID_LEAST_PART : truth->event != GZ_EVENT_BLINK;
-	double spike_deg[2];
+	struct eyes_truth eyes = {
+		.point = truth->point,
+		.pupil_mm = pupil_at(gz_ns_to_s(tracker->newest_ns - tracker->start_ns)),
+		.part = part,
+	};
 	lose_eyes(tracker);
-	spike_offset(tracker, spike_deg);
+	spike_offset(tracker, eyes.spike_deg);
 	for (int i = 0; i < GZ_EYE_COUNT; i++)
-		measure_eye(tracker, i, truth->point, spike_deg, part,
-			    open && !tracker->eye_lost[i], &sample->eye[i]);
+		measure_eye(tracker, i, &eyes, open && !tracker->eye_lost[i], &sample->eye[i]);
 	average_eyes(sample);
 	if (tracker->params.combined_only) {
 		struct gz_sample empty = gz_sample_unmeasured();
