@@ -75,7 +75,8 @@ struct gz_board {
 	int64_t written_ns; /* of the newest message */
 	/* How readers are woken. */
 	int64_t rung_ns;     /* written_ns when they were woken last */
-	int64_t together_ns; /* the writer wakes all of them itself until then */
+	int64_t together_ns; /* the writer wakes all of them itself until then ... */
+	int64_t phase_ns;    /* ... for so long */
 	bool chained;        /* the last time they woke each other */
 };
 
@@ -207,7 +208,8 @@ bool gz_board_write(struct gz_board *board, const struct gz_board_message *messa
  * wakes one, and each reader that is woken wakes RELAYS others, if there are any. A reader that
  * does not, because it was killed just then, is kept from running, or does not know of this, leaves
  * others waiting until the next ring. The writer finds them there, and then wakes all itself for
- * TOGETHER_NS.
+ * some time: a short one if this happens now and then, as on a busy machine, and the longer the
+ * sooner it happens again.
  */
 
 /* Most readers woken at once; the others come first the next time. Chosen: so many threads of a
@@ -221,8 +223,11 @@ enum { RELAYS = 2 };
  * Chosen: the period of a tracker at 500 Hz. At lower rates wake-ups cost little. */
 static const int64_t RELAY_NS = 2100 * GZ_NS_PER_US;
 
-/* Chosen: short for a person, long against the time that a reader waits. */
-static const int64_t TOGETHER_NS = GZ_NS_PER_S;
+/* How long the writer wakes all, at first and at most. Chosen: long against the time for which a
+ * reader is kept from running; and so that a reader that never wakes others delays them less than
+ * twice a second. */
+static const int64_t TOGETHER_LEAST_NS = 20 * GZ_NS_PER_MS;
+static const int64_t TOGETHER_MOST_NS = GZ_NS_PER_S;
 
 static long call_futex(const _Atomic uint32_t *word, int operation, uint32_t value,
 		       const struct timespec *timeout, uint32_t bits)
@@ -242,6 +247,15 @@ static long wake_waiting(const _Atomic uint32_t *bell, uint32_t count, uint32_t 
 	return call_futex(bell, FUTEX_WAKE_BITSET, count, NULL, bits);
 }
 
+/* Readers were found that nobody had woken. */
+static void wake_together(struct gz_board *board, int64_t now_ns)
+{
+	const bool soon = board->phase_ns > 0 && now_ns - board->together_ns < board->phase_ns;
+	const int64_t longer_ns = soon ? 2 * board->phase_ns : TOGETHER_LEAST_NS;
+	board->phase_ns = longer_ns < TOGETHER_MOST_NS ? longer_ns : TOGETHER_MOST_NS;
+	board->together_ns = now_ns + board->phase_ns;
+}
+
 /* Wake those who wait for @p ring. */
 static void wake_readers(struct gz_board *board, uint32_t ring)
 {
@@ -252,7 +266,7 @@ static void wake_readers(struct gz_board *board, uint32_t ring)
 	wake_waiting(bell, relay ? 1 : WAKES_MAX, ~next);
 	/* Those who have not even heard the ring before. */
 	if (relay && board->chained && wake_waiting(bell, WAKES_MAX, ~(next | in_time)) > 0)
-		board->together_ns = now_ns + TOGETHER_NS;
+		wake_together(board, now_ns);
 	board->chained = relay;
 	board->rung_ns = now_ns;
 }
