@@ -134,6 +134,7 @@ static void log_becomes_bids_files_of_the_eyes_that_were_measured(void **state)
 	write_log(from);
 	struct program program = GAZECTL_RUN("convert", from, to);
 	assert_done(&program);
+	assert_non_null(strstr(program.out_text, "/sub-1_recording-eye*_physio.tsv.gz: 2000"));
 	char *left = contents(in_directory("sub-1_recording-eye1_physio.tsv.gz"));
 	char *about = contents(in_directory("sub-1_recording-eye1_physio.json"));
 	char *events = contents(in_directory("sub-1_recording-eye2_physioevents.tsv.gz"));

@@ -232,9 +232,15 @@ static const struct gz_recording_writer *choose_writer(const char *to, const cha
 	return writer;
 }
 
-static void print_result(const struct conversion *conversion, const char *output)
+static void print_result(const struct conversion *conversion, const char *output,
+			 const struct gz_recording_writer *writer)
 {
-	printf("%s: %" PRIu64 " samples, %" PRIu64 " gaps, %" PRIu64 " marks", output,
+	if (writer->files)
+		printf("%.*s%s", (int)(strlen(output) - strlen(writer->ending)), output,
+		       writer->files);
+	else
+		printf("%s", output);
+	printf(": %" PRIu64 " samples, %" PRIu64 " gaps, %" PRIu64 " marks",
 	       conversion->counts.samples, conversion->gaps, conversion->marks);
 	if (conversion->counts.skipped)
 		printf("; %" PRIu64 " lines could not be read and were skipped",
@@ -275,7 +281,7 @@ static enum gazectl_exit write_recording(struct conversion *conversion, const ch
 	enum gz_result ended = writer->close(&conversion->sink, result == GZ_OK);
 	if (result != GZ_OK || ended != GZ_OK)
 		return GAZECTL_FAILED;
-	print_result(conversion, output);
+	print_result(conversion, output, writer);
 	return conversion->damaged ? GAZECTL_DAMAGED : GAZECTL_DONE;
 }
 

@@ -101,8 +101,11 @@ struct gz_recording_output;
 /** A format that can be written. Tables are const and have static storage. */
 struct gz_recording_writer {
 	const char *name;   /**< as in "--to name" */
-	const char *ending; /**< of the names of its files */
-	const char *help;   /**< one line */
+	const char *ending; /**< of the name to write to */
+	/** Ending of the files that are written instead, "*" for the eye; NULL: there is one file,
+	 *  of the given name. */
+	const char *files;
+	const char *help; /**< one line */
 	/**
 	 * Begin to write. Files are created when the header comes.
 	 *

@@ -374,6 +374,7 @@ static enum gz_result bids_close(struct gz_recording_sink *sink, bool complete)
 const struct gz_recording_writer gz_recording_writer_bids = {
 	.name = "bids",
 	.ending = "_physio.tsv.gz",
+	.files = "_recording-eye*_physio.tsv.gz",
 	.help = "BIDS: _recording-eyeN_physio.tsv.gz and .json; marks in _physioevents",
 	.open = bids_open,
 	.label = bids_label,
