@@ -8,6 +8,7 @@ import pathlib
 import shutil
 import subprocess
 import tempfile
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Union
@@ -47,11 +48,21 @@ def _find_gazectl() -> str:
     return program
 
 
-def _run(*arguments: Path) -> str:
-    done = subprocess.run([_find_gazectl(), *(os.fspath(each) for each in arguments)], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
+#: Exit status of gazectl after it has done its work with a log that is cut off or was changed.
+_DAMAGED = 4
+
+
+def _run(*arguments: Path) -> subprocess.CompletedProcess[str]:
+    program = _find_gazectl()
+    try:
+        done = subprocess.run(
+            [program, *(os.fspath(each) for each in arguments)], capture_output=True, text=True, check=False
+        )
+    except OSError as error:
+        raise GazecastError(f"{program} cannot be run: {error.strerror}; GAZECTL may name another gazectl") from error
+    if done.returncode not in (0, _DAMAGED):
         raise GazecastError(done.stderr.strip() or f"gazectl ends with status {done.returncode}", done.returncode)
-    return done.stdout
+    return done
 
 
 def _type_of(name: str) -> Any:
@@ -114,22 +125,28 @@ def read_recording(path: Path, **settings: object) -> Recording:
     settings are options of `gazectl convert` with "_" for "." and "-": display_px="1920x1080",
     display_mm=(380, 300), display_distance_mm=670, rate_hz=250, table_columns="time=t;x=gx;y=gy", format is from_.
 
-    Raises GazecastError with gazectl's own words if the file is not one of these.
+    A log that is cut off or was changed is read as far as it is valid, with a RuntimeWarning; summary["ending"] is then
+    "cut" or "corrupted". Raises GazecastError with gazectl's own words if the file is not one of these.
     """
     source = pathlib.Path(path)
     if "from_" in settings:
         settings["from"] = settings.pop("from_")
     with tempfile.TemporaryDirectory(prefix="gazecast-") as folder:
         log = pathlib.Path(folder, "recording.gzl")
+        done = None
         if source.suffix == ".gzl" and not settings:
             log = source
         else:
-            _run("convert", *_options(settings), "--", source, log)
+            done = _run("convert", *_options(settings), "--", source, log)
         samples, events = pathlib.Path(folder, "samples.csv"), pathlib.Path(folder, "events.csv")
         marks = pathlib.Path(folder, "samples_events.csv")
         _run("convert", "--labels", "--", log, samples)
         _run("label", "--out", events, "--", log)
-        summary = json.loads(_run("inspect", "--json", "--", log))
+        inspected = _run("inspect", "--json", "--", log)
+        summary = json.loads(inspected.stdout)
+        for each in (done, inspected):
+            if each and each.returncode == _DAMAGED:
+                warnings.warn(each.stderr.strip(), RuntimeWarning, stacklevel=2)
         return Recording(
             samples=_read_table(samples),
             events=_read_table(events),

@@ -149,6 +149,8 @@ class Renderer:
             out = np.empty((max(height, 0), max(width, 0), 4), dtype=np.uint8)
         if out.shape != (height, width, 4) or out.dtype != np.uint8 or not out.flags.c_contiguous:
             raise ValueError("out is no contiguous array of uint8, height x width x 4")
+        if gaze is not None and len(gaze) != 2:
+            raise ValueError(f"a gaze has two numbers, x and y, not {len(gaze)}")
         point = None if gaze is None else (c_double * 2)(*gaze)
         self._check(
             self._library.gz_renderer_draw(

@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 try:
     import numpy as np
@@ -162,6 +163,27 @@ class Recordings(unittest.TestCase):
         self.assertAlmostEqual(self.recording.events.host_s[1], self.recording.samples.host_s[300], delta=0.02)
         self.assertEqual(self.recording.events.samples.sum(), 600)
 
+    def test_recording_that_was_cut_off_is_read_up_to_there(self):
+        whole = pathlib.Path(self.folder.name, "whole.gzl")
+        cut = pathlib.Path(self.folder.name, "cut.gzl")
+        subprocess.run(
+            [os.environ.get("GAZECTL", "gazectl"), "convert", "--from=table", "--table.columns=time=t;x=gx;y=gy",
+             "--table.time-unit=ms", "--display.px=1920x1080", "--display.mm=565 318", "--display.distance_mm=600",
+             "--rate-hz=250", self.log, whole], check=True, capture_output=True,
+        )
+        cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
+        for settings in {}, {"display_distance_mm": 700}:
+            with self.assertWarnsRegex(RuntimeWarning, "cut off"):
+                recording = gazecast.read_recording(cut, **settings)
+            self.assertGreater(len(recording.samples), 250)
+            self.assertLess(len(recording.samples), 350)
+        self.assertEqual(gazecast.read_recording(whole).summary["ending"], "whole")
+
+    def test_gazectl_that_cannot_be_run_is_named(self):
+        with unittest.mock.patch.dict(os.environ, GAZECTL="/nonexistent/gazectl"):
+            with self.assertRaisesRegex(gazecast.GazecastError, "/nonexistent/gazectl cannot be run"):
+                gazecast.read_recording(self.log)
+
     def test_file_that_is_no_recording_is_refused_in_words(self):
         with self.assertRaisesRegex(gazecast.GazecastError, "passwd"):
             gazecast.read_recording("/etc/passwd")
@@ -255,6 +277,8 @@ class Rendering(unittest.TestCase):
                 with self.assertRaisesRegex(gazecast.GazecastError, words):
                     wrong()
             renderer.set_volume(make_ball(8))
+            with self.assertRaisesRegex(ValueError, "two numbers"):
+                renderer.draw((10, 10), (0.5, 0.5, 1))
             for size, gaze in (((0, 10), None), ((10, 10), (math.nan, 0)), ((20000, 1), None)):
                 with self.assertRaises(gazecast.GazecastError):
                     renderer.draw(size, gaze)
