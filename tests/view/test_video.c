@@ -298,6 +298,20 @@ static void failing_ffmpeg_is_reported_with_its_messages(void **state)
 	assert_non_null(strstr(self->log.last, "ffmpeg: \"first; No  [31mspace left\";"));
 }
 
+/* As ffmpeg 5.1: if the disk fills up, only -xerror gives it a status that tells. */
+static void full_disk_is_reported(void **state)
+{
+	struct stand_in *self = *state;
+	struct gz_video *video;
+	write_script(self, "cat >/dev/null; echo 'Error writing trailer: No space left on device' "
+			   ">&2; case \"$*\" in *' -xerror '*) exit 1 ;; esac");
+	const struct gz_video_params params = params_of(self, true);
+	assert_int_equal(gz_video_open(&params, &self->log.log, &video), GZ_OK);
+	assert_int_equal(gz_video_close(&video), GZ_ERR_IO);
+	assert_non_null(strstr(self->log.last, "the video is incomplete"));
+	assert_non_null(strstr(self->log.last, "No space left on device"));
+}
+
 static void killed_ffmpeg_is_reported_with_its_signal(void **state)
 {
 	struct stand_in *self = *state;
@@ -328,6 +342,7 @@ TEST_SUITE(video)
 						tear_down),
 		cmocka_unit_test_setup_teardown(failing_ffmpeg_is_reported_with_its_messages,
 						set_up, tear_down),
+		cmocka_unit_test_setup_teardown(full_disk_is_reported, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(killed_ffmpeg_is_reported_with_its_signal, set_up,
 						tear_down),
 	};

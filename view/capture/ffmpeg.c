@@ -107,10 +107,11 @@ static int start_child(struct gz_ffmpeg *ffmpeg, const struct gz_ffmpeg_params *
 	snprintf(rate, sizeof rate, "%.9g", params->fps);
 	snprintf(name, sizeof name, "file:%s",
 		 params->path); /* "file:" protects names such as "a:b" */
+	/* Without -xerror ffmpeg 5.1 exits with 0 when the disk fills up. */
 	const char *const taken[] = {
-		"ffmpeg",     "-hide_banner", "-nostats", "-loglevel", "error", "-y",
-		"-f",         "rawvideo",     "-pix_fmt", "rgb0",      "-s",    size,
-		"-framerate", rate,           "-i",       "pipe:0",    NULL,
+		"ffmpeg", "-hide_banner", "-nostats", "-loglevel", "error",  "-xerror",
+		"-y",     "-f",           "rawvideo", "-pix_fmt",  "rgb0",   "-s",
+		size,     "-framerate",   rate,       "-i",        "pipe:0", NULL,
 	};
 	const char *const target[] = { name, NULL };
 	struct arguments arguments = { .count = 0 };
