@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/captured_log.h"
 #include "view/files/recent.h"
 #include "view/place.h"
 
@@ -42,6 +43,7 @@ static void newest_path_is_first_and_listed_once(void **state)
 static void list_is_written_to_a_new_folder_and_read_back(void **state)
 {
 	(void)state;
+	struct captured_log log;
 	static struct gz_recent recent, read;
 	struct stat status;
 	char file[GZ_PATH_SIZE];
@@ -57,7 +59,11 @@ static void list_is_written_to_a_new_folder_and_read_back(void **state)
 	*strrchr(file, '/') = '\0';
 	assert_int_equal(stat(file, &status), 0);
 	assert_int_equal(status.st_mode & 077, 0);
-	assert_int_equal(gz_recent_write(&recent, "/proc/no/recent", NULL), GZ_ERR_IO);
+	captured_log_init(&log, NULL);
+	assert_int_equal(gz_recent_write(&recent, "/proc/no/recent", &log.log), GZ_ERR_IO);
+	assert_int_equal(log.messages, 1);
+	assert_int_equal(log.level, GZ_LOG_INFO); /* a read-only home is no error */
+	assert_non_null(strstr(log.last, "not listed as recent"));
 }
 
 static void lines_that_are_not_paths_are_skipped(void **state)

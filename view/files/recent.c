@@ -8,6 +8,8 @@
 
 #include "base/text.h"
 
+#define GZ_LOG_MODULE "recent"
+
 enum gz_result gz_recent_file(char out_path[GZ_PATH_SIZE])
 {
 	const char *state = getenv("XDG_STATE_HOME"), *home = getenv("HOME");
@@ -79,7 +81,10 @@ enum gz_result gz_recent_write(const struct gz_recent *recent, const char *file,
 	for (size_t i = 0; i < recent->count; i++)
 		gz_text_add(&text, "%s\n", recent->paths[i]);
 	make_state_folders(file);
-	const enum gz_result result = gz_text_write(&text, file, log);
+	/* A list that is not kept is no reason to stop, and the user did not choose its place. */
+	const enum gz_result result = gz_text_write(&text, file, NULL);
+	if (result != GZ_OK)
+		gz_info(log, "%s: cannot be written, so this file is not listed as recent", file);
 	gz_text_free(&text);
 	return result;
 }

@@ -56,7 +56,7 @@ enum gz_result gz_recent_write_picture(const struct gz_image *image, const char 
 /**
  * Write the list, creating its folders.
  *
- * @retval GZ_ERR_IO  the file cannot be written; logged
+ * @retval GZ_ERR_IO  the file cannot be written, as in a read-only home; logged as information
  */
 enum gz_result gz_recent_write(const struct gz_recent *recent, const char *file,
 			       const struct gz_log *log);
