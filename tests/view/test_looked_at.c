@@ -3,14 +3,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-#include "base/captured_log.h"
+#include "made_frames.h"
 #include "place.h"
-#include "protocol/display.h"
-#include "view/frame/frame.h"
 
-enum { WIDTH = 64, HEIGHT = 48, EDGE = 16, FRONT = 100, BACK = 200 };
+enum { EDGE = 16, FRONT = 100, BACK = 200 };
 
 /* Values of the function: 0 to 1 are the data. */
 #define FRONT_SHARE ((double)FRONT / BACK)
@@ -21,10 +18,7 @@ enum { WIDTH = 64, HEIGHT = 48, EDGE = 16, FRONT = 100, BACK = 200 };
 /* A frame maker over a volume whose back half has one value, and of whose front half the left side
  * has another. */
 struct looking {
-	struct captured_log captured;
-	struct gz_view_options options;
-	struct gz_frame_maker *maker;
-	struct gz_scene_settings settings;
+	struct made_frames made;
 	struct gz_attention_params attention;
 	int64_t now_ns;
 };
@@ -50,18 +44,8 @@ static const char *write_halves(void)
 
 static void begin_looking(struct looking *all)
 {
-	const char *path = write_halves();
-	captured_log_init(&all->captured, "*:warn");
-	const char *const arguments[] = { "gazeview", "--headless", "--backend", "cpu",
-					  "--size",   "64x48",      path,        NULL };
-	assert_int_equal(gz_view_options_read(7, (char *const *)arguments, NULL, &all->options),
-			 GZ_OK);
-	const struct gz_frame_scene scene = gz_frame_scene_of_options(&all->options);
-	assert_int_equal(
-		gz_frame_maker_create(&all->options, &scene, NULL, &all->captured.log, &all->maker),
-		GZ_OK);
-	assert_int_equal(gz_frame_maker_start(all->maker, &all->options, NULL), GZ_OK);
-	all->settings = gz_frame_maker_scene(all->maker)->settings;
+	create_frames(&all->made, write_halves(), "cpu");
+	assert_int_equal(gz_frame_maker_start(all->made.maker, &all->made.options, NULL), GZ_OK);
 	all->attention = gz_attention_default();
 	all->attention.importance = 1;
 }
@@ -70,23 +54,16 @@ static void begin_looking(struct looking *all)
 static struct gz_raised look_at_place(struct looking *all, float x)
 {
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
-	const struct gz_frame_request request = {
-		.settings = &all->settings,
-		.display = &display,
-		.width = WIDTH,
-		.height = HEIGHT,
-	};
 	const struct gz_gaze_reading reading = { .known = true,
 						 .point = { x, 0.5F },
 						 .noise_deg = NAN };
 	for (int i = 0; i < 50; i++) {
-		struct gz_image *image = NULL;
-		struct gz_frame_record record;
-		(void)gz_frame_attend(all->maker, &all->attention, &reading, &display, all->now_ns);
-		assert_int_equal(gz_frame_make(all->maker, &request, &image, &record), GZ_OK);
+		(void)gz_frame_attend(all->made.maker, &all->attention, &reading, &display,
+				      all->now_ns);
+		draw_frame(&all->made, NULL);
 		all->now_ns += FRAME_NS;
 	}
-	return gz_frame_raised(all->maker);
+	return gz_frame_raised(all->made.maker);
 }
 
 static bool holds_value(const struct gz_raised *raised, double value)
@@ -106,7 +83,7 @@ static void the_gaze_finds_what_is_in_front_of_raised_values(void **state)
 	const struct gz_raised front = look_at_place(&all, 0.4F);
 	assert_true(holds_value(&front, FRONT_SHARE) && !holds_value(&front, BACK_SHARE));
 	assert_float_equal(front.share, 1, 1e-12);
-	gz_frame_maker_destroy(&all.maker);
+	gz_frame_maker_destroy(&all.made.maker);
 }
 
 /* Values that looked alike by another function are not raised in the new one. */
@@ -117,16 +94,16 @@ static void another_function_raises_nothing_of_the_old_one(void **state)
 	begin_looking(&all);
 	const struct gz_raised before = look_at_place(&all, 0.6F);
 	assert_true(before.share > 0);
-	assert_true(gz_frame_transfer(all.maker)->emphasis.share > 0);
-	struct gz_transfer other = gz_frame_maker_scene(all.maker)->transfer;
+	assert_true(gz_frame_transfer(all.made.maker)->emphasis.share > 0);
+	struct gz_transfer other = gz_frame_maker_scene(all.made.maker)->transfer;
 	other.points[other.count - 2].value = 0.7;
-	assert_int_equal(gz_frame_set_transfer(all.maker, &other), GZ_OK);
-	assert_int_equal(gz_frame_raised(all.maker).id, 0);
-	assert_true(gz_transfer_same(gz_frame_transfer(all.maker), &other));
+	assert_int_equal(gz_frame_set_transfer(all.made.maker, &other), GZ_OK);
+	assert_int_equal(gz_frame_raised(all.made.maker).id, 0);
+	assert_true(gz_transfer_same(gz_frame_transfer(all.made.maker), &other));
 	/* It is found anew, with the new function's range. */
 	const struct gz_raised after = look_at_place(&all, 0.6F);
 	assert_true(holds_value(&after, BACK_SHARE) && after.share > 0);
-	gz_frame_maker_destroy(&all.maker);
+	gz_frame_maker_destroy(&all.made.maker);
 }
 
 static int open_place(void **state)

@@ -1,75 +1,31 @@
 /* The technique changes between two frames, as the settings panel does it. */
 #include "suite.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "base/captured_log.h"
-#include "protocol/display.h"
+#include "made_frames.h"
+#include "place.h"
 #include "render/scene/techniques.h"
-#include "view/frame/frame.h"
 
-enum { WIDTH = 64, HEIGHT = 48 };
-
-/* A frame maker over a small scene. */
-struct switching {
-	char path[64];
-	struct captured_log captured;
-	struct gz_view_options options;
-	struct gz_frame_maker *maker;
-	struct gz_scene_settings settings;
-	struct gz_frame_record record; /* of the last picture */
-};
-
-static void create_switching(struct switching *all, const char *backend)
+static void create_switching(struct made_frames *all, const char *backend)
 {
-	static const char text[] = "[volume]\nprocedural = shells\ndims = 32 32 32\n"
-				   "[isosurface]\nisovalue = 90\n";
-	snprintf(all->path, sizeof all->path, "/tmp/gazecast-test-XXXXXX.scene");
-	const int file = mkstemps(all->path, 6);
-	assert_true(file >= 0);
-	assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
-	close(file);
-	captured_log_init(&all->captured, "*:warn");
-	const char *const arguments[] = { "gazeview", "--headless", "--backend", backend,
-					  "--size",   "64x48",      all->path,   NULL };
-	assert_int_equal(gz_view_options_read(7, (char *const *)arguments, NULL, &all->options),
-			 GZ_OK);
-	const struct gz_frame_scene scene = gz_frame_scene_of_options(&all->options);
-	assert_int_equal(
-		gz_frame_maker_create(&all->options, &scene, NULL, &all->captured.log, &all->maker),
-		GZ_OK);
-	all->settings = gz_frame_maker_scene(all->maker)->settings;
+	const char *path =
+		write_in_place("shells.scene", "[volume]\nprocedural = shells\ndims = 32 32 32\n"
+					       "[isosurface]\nisovalue = 90\n");
+	create_frames(all, path, backend);
 }
 
-static void begin_switching(struct switching *all)
+static void begin_switching(struct made_frames *all)
 {
 	create_switching(all, "cpu");
 	assert_int_equal(gz_frame_maker_start(all->maker, &all->options, NULL), GZ_OK);
 }
 
-static void end_switching(struct switching *all)
-{
-	gz_frame_maker_destroy(&all->maker);
-	unlink(all->path);
-}
-
 /* The picture with a technique of gz_technique_choices. */
-static void make_with(struct switching *all, int technique, uint8_t out_pixels[4 * WIDTH * HEIGHT])
+static void make_with(struct made_frames *all, int technique, uint8_t out_pixels[BYTES])
 {
-	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
-	const struct gz_frame_request request = {
-		.settings = &all->settings,
-		.display = &display,
-		.width = WIDTH,
-		.height = HEIGHT,
-	};
-	struct gz_image *image = NULL;
 	all->settings.technique = technique;
-	assert_int_equal(gz_frame_make(all->maker, &request, &image, &all->record), GZ_OK);
-	memcpy(out_pixels, image->pixels, (size_t)4 * WIDTH * HEIGHT);
+	draw_frame(all, out_pixels);
 }
 
 static int choice_of(const char *name)
@@ -83,9 +39,8 @@ static int choice_of(const char *name)
 static void technique_follows_the_settings_and_a_refused_one_changes_nothing(void **state)
 {
 	(void)state;
-	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT],
-		third[4 * WIDTH * HEIGHT];
-	struct switching all = { 0 };
+	static uint8_t first[BYTES], second[BYTES], third[BYTES];
+	struct made_frames all = { 0 };
 	begin_switching(&all);
 	const struct gz_backend_params params = { 0 };
 	const int surface = choice_of("isosurface");
@@ -111,14 +66,14 @@ static void technique_follows_the_settings_and_a_refused_one_changes_nothing(voi
 		make_with(&all, surface, second);
 		assert_in_range(all.captured.messages, told, told + 3); /* not in each frame */
 	}
-	end_switching(&all);
+	gz_frame_maker_destroy(&all.maker);
 }
 
 static void slices_are_refused_once_in_a_picture_on_cpu(void **state)
 {
 	(void)state;
-	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT];
-	struct switching all = { 0 };
+	static uint8_t first[BYTES], second[BYTES];
+	struct made_frames all = { 0 };
 	begin_switching(&all);
 	make_with(&all, 0, first);
 	assert_true(gz_frame_cpu_suffices(all.maker));
@@ -133,15 +88,15 @@ static void slices_are_refused_once_in_a_picture_on_cpu(void **state)
 	make_with(&all, 0, second);
 	make_with(&all, choice_of("slices"), second);
 	assert_true(all.captured.messages > told);
-	end_switching(&all);
+	gz_frame_maker_destroy(&all.maker);
 }
 
 /* A window without a GPU prepares its renderer of cpu on a thread. */
 static void slices_make_cpu_give_way_where_the_backend_may_be_chosen(void **state)
 {
 	(void)state;
-	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT];
-	struct switching all = { 0 };
+	static uint8_t first[BYTES], second[BYTES];
+	struct made_frames all = { 0 };
 	const int slices = choice_of("slices");
 	const struct gz_backend_params params = { 0 };
 	const bool there = gz_techniques[slices - 1]->check("gl", &params, NULL) == GZ_OK;
@@ -163,15 +118,15 @@ static void slices_make_cpu_give_way_where_the_backend_may_be_chosen(void **stat
 		assert_string_equal(all.record.backend, "cpu");
 		assert_memory_equal(first, second, sizeof first);
 	}
-	end_switching(&all);
+	gz_frame_maker_destroy(&all.maker);
 }
 
 /* Who named cpu keeps it: as without a choice. */
 static void slices_are_refused_where_the_options_name_cpu(void **state)
 {
 	(void)state;
-	static uint8_t first[4 * WIDTH * HEIGHT], second[4 * WIDTH * HEIGHT];
-	struct switching all = { 0 };
+	static uint8_t first[BYTES], second[BYTES];
+	struct made_frames all = { 0 };
 	begin_switching(&all);
 	gz_frame_maker_let_choose(all.maker, &all.options, NULL);
 	make_with(&all, 0, first);
@@ -181,15 +136,15 @@ static void slices_are_refused_where_the_options_name_cpu(void **state)
 		assert_memory_equal(first, second, sizeof first);
 		make_with(&all, 0, second);
 	}
-	end_switching(&all);
+	gz_frame_maker_destroy(&all.maker);
 }
 
 /* What a session of the window does while its isovalue moves and then rests. */
 static void triangles_are_made_beside_the_frames(void **state)
 {
 	(void)state;
-	static uint8_t waited[4 * WIDTH * HEIGHT], ready[4 * WIDTH * HEIGHT];
-	struct switching all;
+	static uint8_t waited[BYTES], ready[BYTES];
+	struct made_frames all = { 0 };
 	const int isosurface = choice_of("isosurface");
 	begin_switching(&all);
 	struct gz_frame_maker *maker = all.maker;
@@ -222,7 +177,13 @@ static void triangles_are_made_beside_the_frames(void **state)
 	assert_memory_equal(ready, waited, sizeof ready);
 	all.settings.rays.surface.isovalue = 60;
 	assert_int_equal(gz_frame_prepare(maker, &all.settings, NULL), GZ_FRAME_PREPARING);
-	end_switching(&all);
+	gz_frame_maker_destroy(&all.maker);
+}
+
+static int open_place(void **state)
+{
+	(void)state;
+	return create_place();
 }
 
 TEST_SUITE(technique_switch)
@@ -234,5 +195,5 @@ TEST_SUITE(technique_switch)
 		cmocka_unit_test(slices_are_refused_where_the_options_name_cpu),
 		cmocka_unit_test(triangles_are_made_beside_the_frames),
 	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, open_place, remove_place);
 }
