@@ -33,11 +33,13 @@ static inline float exp2_minus(float x)
 	return p * whole.power;
 }
 
+/* A power that exp2_minus() takes. */
 static inline float limit_power(float x)
 {
 	return x < POWER_MOST ? x : POWER_MOST;
 }
 
+/* A share of a colour as a whole number, 0 to levels. */
 static inline uint32_t pack_channel(float share, float levels)
 {
 	/* Rounding may take a difference of sums above 1. */
@@ -45,6 +47,7 @@ static inline uint32_t pack_channel(float share, float levels)
 	return (uint32_t)(int32_t)(level < levels ? level : levels);
 }
 
+/* The word of a colour: 11 bits of red, 11 of green, 10 of blue. */
 static inline uint32_t pack_float_colour(float red, float green, float blue)
 {
 	return pack_channel(red, 2047) << 21 | pack_channel(green, 2047) << 10 |
@@ -63,6 +66,7 @@ static inline void average_stretch(const struct gz_transfer_sums *sums, int from
 		out_rgb[channel] = (float)((high[1 + channel] - low[1 + channel]) * share);
 }
 
+/* struct gz_segment_kernels, average */
 static void average_segments(const struct gz_transfer_sums *sums, int low, int count,
 			     struct gz_segment_means *out_means)
 {
@@ -113,6 +117,7 @@ static inline void blend_segment(const struct gz_segment_means *restrict means,
 	row->colour[i] = pack_float_colour(red * share, green * share, blue * share);
 }
 
+/* Write opacities and colours together. */
 static inline void store_segments(struct segment_row *row, int count,
 				  struct gz_transfer_entry *out_entries)
 {
@@ -122,6 +127,7 @@ static inline void store_segments(struct segment_row *row, int count,
 	memcpy(out_entries, row->words, (size_t)count * sizeof *out_entries);
 }
 
+/* struct gz_segment_kernels, blend */
 static void blend_segments(const struct gz_segment_means *means, int count, float length,
 			   struct gz_transfer_entry *out_rising,
 			   struct gz_transfer_entry *out_falling)
@@ -141,6 +147,7 @@ static void blend_segments(const struct gz_segment_means *means, int count, floa
 	store_segments(&row, count, out_falling);
 }
 
+/* struct gz_segment_kernels, mix */
 static void mix_segments(const struct gz_transfer_sums *sums, int low, int count,
 			 struct gz_transfer_entry *out_entries)
 {
@@ -154,6 +161,7 @@ static void mix_segments(const struct gz_transfer_sums *sums, int low, int count
 	}
 }
 
+/* struct gz_segment_kernels, mix_in_cell */
 static void mix_in_cell(const struct gz_transfer_sums *sums, int cell,
 			struct gz_transfer_entry *out_entry)
 {
@@ -164,6 +172,7 @@ static void mix_in_cell(const struct gz_transfer_sums *sums, int cell,
 	out_entry->colour = pack_float_colour(rgb[0], rgb[1], rgb[2]);
 }
 
+/* struct gz_segment_kernels, segment_in_cell */
 static void segment_in_cell(const struct gz_transfer_sums *sums, int cell, float length,
 			    struct gz_transfer_entry *out_entry)
 {
