@@ -1,6 +1,7 @@
 #include "render/data/clip_region.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/vector.h"
 
@@ -176,6 +177,26 @@ int gz_clip_plane_outline(const struct gz_clip_region *clip, const struct gz_vol
 		for (int k = 0; k < 3; k++)
 			out_corners[i][axes[k]] = polygon[i][k];
 	return count;
+}
+
+bool gz_clip_plane_trace(const struct gz_clip_region *clip, const struct gz_volume *volume,
+			 int axis, double share, double out_ends[2][3])
+{
+	double corners[GZ_BOX_POLYGON_MAX][3], ends[GZ_BOX_POLYGON_MAX][3];
+	const int count = gz_clip_plane_outline(clip, volume, corners);
+	int found = 0;
+	for (int i = 0; i < count; i++) {
+		const double *a = corners[i], *b = corners[(i + 1) % count];
+		if ((a[axis] < share) == (b[axis] < share))
+			continue;
+		const double way = (share - a[axis]) / (b[axis] - a[axis]);
+		for (int k = 0; k < 3; k++)
+			ends[found][k] = a[k] + way * (b[k] - a[k]);
+		ends[found++][axis] = share;
+	}
+	if (found == 2) /* a convex outline is crossed twice, or not at all */
+		memcpy(out_ends, ends, 2 * sizeof ends[0]);
+	return found == 2;
 }
 
 void gz_clip_plane_through(struct gz_clip_region *clip, const struct gz_volume *volume,

@@ -112,6 +112,18 @@ void gz_clip_voxels_keep(const struct gz_clip_voxels *voxels, int y, int z, int 
 int gz_clip_plane_outline(const struct gz_clip_region *clip, const struct gz_volume *volume,
 			  double out_corners[GZ_BOX_POLYGON_MAX][3]);
 
+/**
+ * The line in which the clip plane crosses a plane across an axis, within the clip box, whether or
+ * not the clip plane is on.
+ *
+ * @param volume  whose box it is; only its dims and spacing are read
+ * @param share   where the other plane lies, as a fraction of the volume's edge along @p axis
+ * @param[out] out_ends  as fractions of the volume's edges; written on success
+ * @return false: they do not cross, or at a corner only, or are the same
+ */
+bool gz_clip_plane_trace(const struct gz_clip_region *clip, const struct gz_volume *volume,
+			 int axis, double share, double out_ends[2][3]);
+
 /** Move the clip plane, with its normal, to a place in the world. Beyond the box it stops at the
  *  box's corner. @param volume  whose box it is; only its dims and spacing are read */
 void gz_clip_plane_through(struct gz_clip_region *clip, const struct gz_volume *volume,

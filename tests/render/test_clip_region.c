@@ -230,6 +230,45 @@ static void outline_is_where_the_plane_meets_the_clip_box(void **state)
 	check_outline(&clip, 4);
 }
 
+static void trace_is_where_the_outline_crosses_a_slice(void **state)
+{
+	(void)state;
+	double ends[2][3];
+	struct gz_clip_region clip = cut_at(1 / 0.5, 1 / 0.4, 1 / 0.25, 0.5);
+	for (int i = 0; i < 3; i++)
+		clip.normal[i] /= 4;
+	for (int axis = 0; axis < 3; axis++)
+		for (double share = 0.125; share < 1; share += 0.25) {
+			const struct gz_clip_bounds bounds = in_world(&clip);
+			assert_true(gz_clip_plane_trace(&clip, &volume, axis, share, ends));
+			for (int i = 0; i < 2; i++) {
+				double place[3];
+				int faces = 0;
+				for (int k = 0; k < 3; k++) {
+					place[k] = (2 * ends[i][k] - 1) * half[k];
+					faces += k != axis && (fabs(ends[i][k]) < 1e-9 ||
+							       fabs(ends[i][k] - 1) < 1e-9);
+				}
+				assert_true(ends[i][axis] == share && faces > 0);
+				assert_float_equal(gz_clip_beyond(&bounds, place), 0, 1e-9);
+			}
+			assert_true(fabs(ends[0][0] - ends[1][0]) + fabs(ends[0][1] - ends[1][1]) +
+					    fabs(ends[0][2] - ends[1][2]) >
+				    0.1);
+		}
+	/* A plane across the axis of the slice has no line in it. */
+	clip = cut_at(0, 0, -1, 0.5);
+	assert_false(gz_clip_plane_trace(&clip, &volume, 2, 0.5, ends));
+	assert_false(gz_clip_plane_trace(&clip, &volume, 2, 0.4, ends));
+	assert_true(gz_clip_plane_trace(&clip, &volume, 0, 0.4, ends));
+	/* The line ends where the clip box does. */
+	clip.greatest[1] = 0.3;
+	assert_true(gz_clip_plane_trace(&clip, &volume, 0, 0.4, ends));
+	assert_float_equal(fmax(ends[0][1], ends[1][1]), 0.3, 1e-9);
+	clip.greatest[0] = 0.3;
+	assert_false(gz_clip_plane_trace(&clip, &volume, 0, 0.4, ends));
+}
+
 TEST_SUITE(clip_region)
 {
 	const struct CMUnitTest tests[] = {
@@ -238,6 +277,7 @@ TEST_SUITE(clip_region)
 		cmocka_unit_test(plane_is_the_same_in_any_coordinates),
 		cmocka_unit_test(ray_is_cut_where_it_crosses_the_plane),
 		cmocka_unit_test(voxels_are_kept_by_their_middles),
+		cmocka_unit_test(trace_is_where_the_outline_crosses_a_slice),
 		cmocka_unit_test(outline_is_where_the_plane_meets_the_clip_box),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

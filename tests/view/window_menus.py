@@ -223,6 +223,22 @@ class Menus(WindowCase):
 
         return columns(0, 240, 50, 135), columns(240, 480, 170, 275)
 
+    def test_slices_have_the_line_of_the_clip_plane(self):
+        self.start_own_scene("--view.layout", "slices", "--clip.plane=yes", "--clip.normal",
+                             "1 0.6 0.3")
+
+        def lines(picture):
+            """Rows of each slice in which there is something of the line."""
+            return [sum(any(b > 170 and g > 150 and r < 150 for r, g, b in
+                            (picture.at(x, y) for x in range(left, left + 240)))
+                        for y in range(top, top + 60))
+                    for left, top in ((0, 65), (240, 65), (240, 200))]
+
+        self.until(lambda p: min(lines(p)) > 20, "three lines")
+        self.find("remove the clip plane")
+        self.press("Return")
+        self.until(lambda p: max(lines(p)) == 0, "no line")
+
     def test_slices_are_moved_measured_and_saved(self):
         self.start_own_scene()
         self.find("sagittal")

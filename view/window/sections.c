@@ -28,6 +28,10 @@
 /* Half the gap of the crosshair around its middle, unscaled: the voxel stays visible. */
 #define CROSS_GAP 6.0
 
+/* Length of the mark on the clip plane's line, unscaled (chosen: as the crosshair's gap is wide).
+ */
+#define CLIP_TICK 12.0
+
 enum { TEXT_SIZE = 160 };
 
 enum section_drag { DRAG_CROSSHAIR, DRAG_WINDOW, DRAG_DISTANCE };
@@ -56,6 +60,7 @@ struct gz_window_sections {
 
 static const struct gz_paint cross_paint = { 255, 214, 64, 200 };
 static const struct gz_paint line_paint = { 90, 220, 255, 255 };
+static const struct gz_paint clip_paint = { 96, 220, 255, 200 }; /* as of its handles */
 static const struct gz_paint black = { 0, 0, 0, 255 };
 static const struct gz_paint ground = { 16, 16, 18, 255 };
 
@@ -479,6 +484,48 @@ static void draw_crosshair(const struct section_frame *frame, struct gz_place mi
 		gz_draw_line(GZ_LAYER_PICTURE, ends[i][0], ends[i][1], cross_paint, 1);
 }
 
+/* A short line from the middle of the clip plane's to the side that is cut off. */
+static void draw_clip_side(const struct gz_window *window, enum gz_section_plane plane,
+			   struct gz_place from, struct gz_place to)
+{
+	static const double one[3] = { 1, 1, 1 }, none[3] = { 0, 0, 0 };
+	const double across[2] = { (double)(from.y - to.y), (double)(to.x - from.x) };
+	const double length = hypot(across[0], across[1]);
+	const double tick = CLIP_TICK * (double)gz_widgets_scale();
+	const double middle[2] = { (double)(from.x + to.x) / 2, (double)(from.y + to.y) / 2 };
+	struct gz_clip_bounds bounds;
+	double place[3];
+	if (length < tick)
+		return;
+	memcpy(place, window->settings.view.crosshair, sizeof place);
+	double step[2] = { across[0] / length * tick, across[1] / length * tick };
+	const double beside[2] = { middle[0] + step[0], middle[1] + step[1] };
+	place_at(window, plane, beside, place);
+	gz_clip_region_place(&window->settings.rays.clip, volume_of(window), one, none, &bounds);
+	const double side = gz_clip_beyond(&bounds, place) < 0 ? -1 : 1;
+	gz_draw_line(GZ_LAYER_PICTURE, (struct gz_place) { (float)middle[0], (float)middle[1] },
+		     (struct gz_place) { (float)(middle[0] + side * step[0]),
+					 (float)(middle[1] + side * step[1]) },
+		     clip_paint, 1);
+}
+
+/* Where the clip plane crosses the slice. */
+static void draw_clip_line(const struct gz_window *window, enum gz_section_plane plane,
+			   const struct section_frame *frame)
+{
+	const struct gz_clip_region *clip = &window->settings.rays.clip;
+	const struct gz_section_axes axes = axes_of(window, plane);
+	double ends[2][3];
+	if (!clip->plane ||
+	    !gz_clip_plane_trace(clip, volume_of(window), axes.normal,
+				 window->settings.view.crosshair[axes.normal], ends))
+		return;
+	const struct gz_place from = window_place(frame, axes, ends[0]);
+	const struct gz_place to = window_place(frame, axes, ends[1]);
+	gz_draw_line(GZ_LAYER_PICTURE, from, to, clip_paint, 1);
+	draw_clip_side(window, plane, from, to);
+}
+
 /* Distances whose ends lie in the slice shown, to half a voxel. */
 static void draw_distances(const struct gz_window *window, enum gz_section_plane plane,
 			   const struct section_frame *frame)
@@ -529,6 +576,7 @@ static void draw_section(struct gz_window *window, enum gz_section_plane plane)
 			     (struct gz_place) { at.x + (float)frame.extent[0],
 						 at.y + (float)frame.extent[1] },
 			     icon);
+	draw_clip_line(window, plane, &frame);
 	draw_crosshair(&frame, window_place(&frame, axes, window->settings.view.crosshair));
 	letters_of(volume, axes, letters);
 	draw_side_letters(&frame, letters);
