@@ -15,6 +15,7 @@
 
 #include <unistd.h>
 
+#include "view/panels/panel_places.h"
 #include "view/panels/panel_sheets.hpp"
 
 namespace
@@ -64,9 +65,6 @@ constexpr int GLFW_KEYS[KEYS] = { GLFW_KEY_LEFT,      GLFW_KEY_RIGHT,  GLFW_KEY_
 /* Most keys that are remembered from one frame to the next (chosen: nobody presses more). */
 constexpr int NOTED_MAX = 8;
 
-/* Most places along an axis that are tried for a panel (chosen: of a dozen others). */
-constexpr int EDGES_MAX = 26;
-
 /* State kept from frame to frame. */
 struct Memory {
 	int noted[NOTED_MAX]; /* of GLFW */
@@ -79,6 +77,7 @@ struct Memory {
 	int frames_since_tab;               /* Dear ImGui answers it after some */
 	bool in_columns;
 	bool in_bar;          /* the menu bar is being drawn */
+	int opened;           /* number of panels opened so far */
 	bool canvas_by_click; /* a click gave the canvas its keyboard */
 	float scale;          /* of the fonts and the style there are */
 	float asked_scale;    /* 0: what the display says */
@@ -345,72 +344,55 @@ bool is_in_the_way(const ImGuiWindow *window, const ImGuiWindow *own)
 	return window != own && window->WasActive && !(window->Flags & other);
 }
 
-/* A panel to be placed. */
-struct Placing {
-	const ImGuiWindow *own;
-	ImVec2 size;
-	ImVec2 least, greatest; /* the room for it */
-	ImVec2 wanted;
-};
-
-/* Area of a panel at a place that others cover. */
-float covered_area(const Placing &placing, ImVec2 at)
+/* What gz_panel_find_place() is told about panels that are shown. */
+void list_others(const ImGuiWindow *own, gz_panel_placing &placing, ImGuiWindow **windows)
 {
-	const ImRect here(at, ImVec2(at.x + placing.size.x, at.y + placing.size.y));
-	float area = 0;
-	for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows) {
-		ImRect both = window->Rect();
-		if (!is_in_the_way(window, placing.own) || !both.Overlaps(here))
+	for (ImGuiWindow *window : ImGui::GetCurrentContext()->Windows) {
+		if (!is_in_the_way(window, own) || placing.count == GZ_PANEL_OTHERS_MAX)
 			continue;
-		both.ClipWith(here);
-		area += both.GetWidth() * both.GetHeight();
+		const ImRect at = window->Collapsed ? window->TitleBarRect() : window->Rect();
+		gz_panel_other &other = placing.others[placing.count];
+		other = {};
+		other.at = { at.Min.x, at.Min.y, at.GetWidth(), at.GetHeight() };
+		other.title_height = window->TitleBarHeight();
+		other.opened = *window->StateStorage.GetIntRef(ImHashStr("##opened"));
+		other.folded = window->Collapsed;
+		windows[placing.count++] = window;
 	}
-	return area;
 }
 
-/* Where an edge of a panel may lie: at the edges of the room, and beside the other panels. */
-int possible_edges(const Placing &placing, int axis, float *edges)
+/* Fold those that have to make room. */
+void fold_others(const gz_panel_placing &placing, ImGuiWindow **windows)
 {
-	const float gap = MARGIN * gz_widgets_scale(), size = placing.size[axis];
-	int count = 0;
-	edges[count++] = placing.least[axis];
-	edges[count++] = placing.greatest[axis] - size;
-	for (const ImGuiWindow *window : ImGui::GetCurrentContext()->Windows) {
-		if (!is_in_the_way(window, placing.own) || count + 2 > EDGES_MAX)
-			continue;
-		edges[count++] = window->Pos[axis] + window->Size[axis] + gap;
-		edges[count++] = window->Pos[axis] - size - gap;
-	}
-	return count;
-}
-
-bool has_room(const Placing &placing, ImVec2 at)
-{
-	return at.x >= placing.least.x && at.y >= placing.least.y &&
-	       at.x + placing.size.x <= placing.greatest.x + 1 &&
-	       at.y + placing.size.y <= placing.greatest.y + 1;
-}
-
-/* The place nearest to the wanted one that covers least of the others. */
-ImVec2 free_place(const Placing &placing)
-{
-	float x[EDGES_MAX], y[EDGES_MAX];
-	const int columns = possible_edges(placing, 0, x), rows = possible_edges(placing, 1, y);
-	ImVec2 best = placing.wanted;
-	float best_area = covered_area(placing, best), best_way = 0;
-	for (int i = 0; i < columns * rows; i++) {
-		const ImVec2 at(x[i % columns], y[i / columns]);
-		if (!has_room(placing, at))
-			continue;
-		const float area = covered_area(placing, at);
-		const float way = fabsf(at.x - placing.wanted.x) + fabsf(at.y - placing.wanted.y);
-		if (area < best_area || (area == best_area && way < best_way)) {
-			best = at;
-			best_area = area;
-			best_way = way;
+	for (int i = 0; i < placing.count; i++)
+		if (placing.others[i].folded && !windows[i]->Collapsed) {
+			const gz_panel_rectangle &at = placing.others[i].at;
+			ImGui::SetWindowCollapsed(windows[i], true);
+			ImGui::SetWindowPos(windows[i], ImVec2(at.x, at.y));
 		}
-	}
-	return best;
+}
+
+void place_panel(const ImGuiWindow *own, const gz_panel_place &place)
+{
+	const float margin = MARGIN * gz_widgets_scale();
+	const ImVec2 all = ImGui::GetIO().DisplaySize,
+		     size = ImGui::CalcWindowNextAutoFitSize(const_cast<ImGuiWindow *>(own));
+	const bool right = place.at == GZ_PANEL_TOP_RIGHT || place.at == GZ_PANEL_BOTTOM_RIGHT;
+	const bool low = place.at == GZ_PANEL_BOTTOM_LEFT || place.at == GZ_PANEL_BOTTOM_RIGHT;
+	ImGuiWindow *windows[GZ_PANEL_OTHERS_MAX];
+	gz_panel_placing placing = {};
+	float corner[2];
+	placing.room = { margin, margin + place.margin_top, all.x - 2 * margin,
+			 all.y - 2 * margin - place.margin_top - place.margin_bottom };
+	placing.gap = margin;
+	placing.width = size.x;
+	placing.height = size.y;
+	placing.wanted[0] = right ? all.x - margin - size.x : margin;
+	placing.wanted[1] = low ? all.y - margin - place.margin_bottom - size.y : placing.room.y;
+	list_others(own, placing, windows);
+	gz_panel_find_place(&placing, corner);
+	fold_others(placing, windows);
+	ImGui::SetNextWindowPos(ImVec2(corner[0], corner[1]));
 }
 
 /* A panel that has opened moves to a free place, once: its size is known from its first frame, in
@@ -418,23 +400,15 @@ ImVec2 free_place(const Placing &placing)
 void avoid_other_panels(const char *title, const gz_panel_place &place)
 {
 	ImGuiWindow *own = ImGui::FindWindowByName(title);
-	const float margin = MARGIN * gz_widgets_scale();
-	const ImVec2 room = ImGui::GetIO().DisplaySize;
-	const bool right = place.at == GZ_PANEL_TOP_RIGHT || place.at == GZ_PANEL_BOTTOM_RIGHT;
-	const bool low = place.at == GZ_PANEL_BOTTOM_LEFT || place.at == GZ_PANEL_BOTTOM_RIGHT;
 	if (!own)
 		return;
 	bool *placed = own->StateStorage.GetBoolRef(ImHashStr("##placed"));
 	if (own->WasActive && !*placed) {
-		Placing placing = { own, ImGui::CalcWindowNextAutoFitSize(own),
-				    ImVec2(margin, margin + place.margin_top),
-				    ImVec2(room.x - margin, room.y - margin - place.margin_bottom),
-				    ImVec2(0, 0) };
-		placing.wanted =
-			ImVec2(right ? placing.greatest.x - placing.size.x : placing.least.x,
-			       low ? placing.greatest.y - placing.size.y : placing.least.y);
-		ImGui::SetNextWindowPos(free_place(placing));
+		own->StateStorage.SetInt(ImHashStr("##opened"), ++memory().opened);
+		place_panel(own, place);
 	}
+	if (!own->WasActive) /* it opens, and may have been folded when it was closed */
+		ImGui::SetNextWindowCollapsed(false);
 	*placed = own->WasActive;
 }
 
