@@ -229,6 +229,7 @@ struct gz_brick_pool {
 	uint8_t *voxels;
 	struct gz_brick_rooms rooms;
 	size_t unreadable; /* bricks */
+	size_t coming;     /* after the last turn */
 	/* shared between the threads, guarded by mutex */
 	pthread_mutex_t mutex;
 	pthread_cond_t errand_waits, errand_done;
@@ -331,9 +332,15 @@ void gz_brick_pool_turn(struct gz_brick_pool *pool, const struct gz_brick_want *
 		out = collect(pool, true);
 		out = send_for(pool, wants, count, out);
 	}
+	pool->coming = out;
+	gz_brick_pool_view(pool, out_view);
+}
+
+void gz_brick_pool_view(const struct gz_brick_pool *pool, struct gz_brick_view *out_view)
+{
 	*out_view = (struct gz_brick_view) { .voxels = pool->voxels,
 					     .table = pool->rooms.table,
-					     .coming = out };
+					     .coming = pool->coming };
 }
 
 const struct gz_brick_file *gz_brick_pool_file(const struct gz_brick_pool *pool)

@@ -145,6 +145,9 @@ size_t gz_brick_pool_rooms(const struct gz_brick_pool *pool);
 void gz_brick_pool_turn(struct gz_brick_pool *pool, const struct gz_brick_want *wants, size_t count,
 			bool wait, struct gz_brick_view *out_view);
 
+/** The view of the last turn, again; before the first, of the levels that stay. */
+void gz_brick_pool_view(const struct gz_brick_pool *pool, struct gz_brick_view *out_view);
+
 /** Stop the threads, close the file, free everything and set to NULL. Accepts a pointer to NULL. */
 void gz_brick_pool_destroy(struct gz_brick_pool **pool);
 

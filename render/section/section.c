@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "render/data/brick_value.h"
 #include "render/data/voxel_colour.h"
 
 /* Steps of a ray in a voxel length (chosen: a surface is found to half a voxel). */
@@ -298,6 +299,10 @@ static double value_of_step(const struct walk *walk, long n)
 	const struct gz_volume *volume = walk->volume;
 	double place[3];
 	place_of_step(walk, n, place);
+	if (volume->bricks)
+		return volume->slope *
+			       gz_brick_value(volume->bricks, place, takes_nearest(volume)) +
+		       volume->intercept;
 	return mix_value(volume, find_between(volume, 2, place[2]),
 			 find_between(volume, 1, place[1]), find_between(volume, 0, place[0]));
 }

@@ -38,7 +38,8 @@ struct gz_section_axes {
  */
 struct gz_section_axes gz_section_axes_of(enum gz_section_plane plane, bool oriented);
 
-/** Whether sections of a volume can be drawn: its voxels are in memory, not in a file of bricks. */
+/** Whether sections of a volume can be drawn: its voxels are in memory, not in a file of bricks.
+ * Looks along rays need no more than the bricks that are in memory. */
 bool gz_section_possible(const struct gz_volume *volume);
 
 /**
@@ -89,7 +90,8 @@ enum gz_result gz_section_draw(const struct gz_section_request *request, int wid
 			       struct gz_image *image);
 
 /**
- * Where a ray becomes more opaque than not: what somebody sees who looks along it.
+ * Where a ray becomes more opaque than not: what somebody sees who looks along it. Volumes of
+ * bricks as for gz_section_look().
  *
  * @param origin, direction  of the ray, in the world of render/data/volume.h
  * @param[out] out_place  written on success
@@ -117,9 +119,9 @@ struct gz_section_seen {
 /**
  * Find what somebody sees who looks along a ray: the place in front of which half of all opacity
  * lies, and from there up to three voxel lengths on, as long as opacity rises. So a surface gives
- * the value of its matter, not one in between.
+ * the value of its matter, not one in between. Of a volume of bricks, those that are in memory are
+ * looked at, so call it between two turns of their pool.
  *
- * @param volume  for which gz_section_possible() holds
  * @param[out] out_seen  written on success
  * @return false: the ray passes nothing, or too little to be seen
  */

@@ -5,9 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/data/brick_value.h"
+#include "render/data/format.h"
 #include "render/data/voxel_colour.h"
 #include "render/section/distances.h"
 #include "render/section/section.h"
+#include "volume_files.h"
 
 enum { X = 5, Y = 4, Z = 3 };
 
@@ -353,6 +356,92 @@ static void a_look_sees_what_the_clip_box_leaves(void **state)
 	free(volume.voxels);
 }
 
+/* A volume of noise, and the same in a file of bricks. No edge is a multiple of a brick's. */
+static void make_noise_and_bricks(struct gz_volume *volume, struct gz_volume *bricks)
+{
+	*volume = (struct gz_volume) { .dims = { 70, 45, 101 },
+				       .spacing = { 1, 1, 1.2 },
+				       .type = GZ_VOXEL_U8,
+				       .slope = 2,
+				       .intercept = -7 };
+	assert_int_equal(gz_volume_allocate(volume), GZ_OK);
+	uint32_t random = 1;
+	for (size_t i = 0; i < gz_volume_voxel_count(volume); i++) {
+		random = random * 1664525 + 1013904223;
+		((uint8_t *)volume->voxels)[i] = (uint8_t)(random >> 24);
+	}
+	gz_volume_find_range(volume);
+	assert_int_equal(gz_bricks_write(volume, files_path("noise.gzb"), NULL, NULL), GZ_OK);
+	assert_int_equal(gz_volume_load(files_path("noise.gzb"), NULL, NULL, NULL, bricks), GZ_OK);
+}
+
+/* Bring the bricks of all levels into memory. */
+static void read_all_bricks(const struct gz_volume *volume)
+{
+	struct gz_brick_want wants[64];
+	struct gz_brick_view view;
+	const size_t count = gz_brick_pool_file(volume->bricks)->layout.brick_count;
+	assert_in_range(count, 2, 64);
+	for (uint32_t i = 0; i < count; i++)
+		wants[i] = (struct gz_brick_want) { 1, i };
+	gz_brick_pool_turn(volume->bricks, wants, count, true, &view);
+	assert_int_equal(view.coming, 0);
+}
+
+static void looks_into_bricks_see_what_looks_into_memory_see(void **state)
+{
+	(void)state;
+	struct gz_volume volume, bricks;
+	const struct gz_transfer transfer = {
+		.count = 2,
+		.points = { { .value = 0, .opacity = 0 }, { .value = 1, .opacity = 0.1 } },
+	};
+	struct gz_section_ray ray = { .until = INFINITY, .clip = gz_clip_whole };
+	int seen_count = 0;
+	make_noise_and_bricks(&volume, &bricks);
+	read_all_bricks(&bricks);
+	for (int i = 0; i < 200; i++) {
+		struct gz_section_seen seen[2];
+		const double turn = i * 0.7, height = i / 100.0 - 1;
+		memcpy(ray.origin, (double[]) { 2 * cos(turn), 2 * sin(turn), height },
+		       sizeof ray.origin);
+		for (int axis = 0; axis < 3; axis++)
+			ray.direction[axis] = 0.1 * sin(i + axis) - ray.origin[axis];
+		bricks.labels = volume.labels = i % 2; /* nearest voxels */
+		const bool sees = gz_section_look(&volume, &transfer, &ray, &seen[0]);
+		assert_int_equal(gz_section_look(&bricks, &transfer, &ray, &seen[1]), sees);
+		if (!sees)
+			continue;
+		assert_float_equal(seen[0].value, seen[1].value, 1e-9);
+		assert_float_equal(seen[0].depth, seen[1].depth, 1e-12);
+		assert_float_equal(seen[0].opacity, seen[1].opacity, 1e-9);
+		seen_count++;
+	}
+	assert_true(seen_count > 150);
+	gz_volume_free(&volume);
+	gz_volume_free(&bricks);
+}
+
+static void values_of_bricks_come_from_coarser_ones_until_they_are_there(void **state)
+{
+	(void)state;
+	struct gz_volume volume, bricks;
+	const double corner[3] = { 0, 0, 0 }, end[3] = { 1, 1, 1 }, middle[3] = { 0.5, 0.5, 0.5 };
+	make_noise_and_bricks(&volume, &bricks);
+	/* Coarse voxels of noise lie near its mean. */
+	assert_float_equal(gz_brick_value(bricks.bricks, middle, false), 127, 40);
+	read_all_bricks(&bricks);
+	const uint8_t *voxels = volume.voxels;
+	assert_true(gz_brick_value(bricks.bricks, corner, false) == voxels[0]);
+	assert_true(gz_brick_value(bricks.bricks, corner, true) == voxels[0]);
+	assert_true(gz_brick_value(bricks.bricks, end, false) ==
+		    voxels[gz_volume_voxel_count(&volume) - 1]);
+	assert_true(gz_brick_value(bricks.bricks, end, true) ==
+		    voxels[gz_volume_voxel_count(&volume) - 1]);
+	gz_volume_free(&volume);
+	gz_volume_free(&bricks);
+}
+
 TEST_SUITE(section)
 {
 	const struct CMUnitTest tests[] = {
@@ -367,6 +456,8 @@ TEST_SUITE(section)
 		cmocka_unit_test(a_ray_ends_where_it_becomes_opaque),
 		cmocka_unit_test(a_look_finds_the_value_that_is_seen),
 		cmocka_unit_test(a_look_sees_what_the_clip_box_leaves),
+		cmocka_unit_test(looks_into_bricks_see_what_looks_into_memory_see),
+		cmocka_unit_test(values_of_bricks_come_from_coarser_ones_until_they_are_there),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 
 #include "made_frames.h"
 #include "place.h"
+#include "render/data/format.h"
 
 enum { EDGE = 16, FRONT = 100, BACK = 200 };
 
@@ -14,6 +15,12 @@ enum { EDGE = 16, FRONT = 100, BACK = 200 };
 #define BACK_SHARE  1.0
 
 #define FRAME_NS INT64_C(20000000)
+
+/* A scene of a file of the volume. */
+#define HALVES_SCENE(file)                                          \
+	"[volume]\nfile = " file "\n[transfer]\nfile = halves.tf\n" \
+	"[camera]\neye = 0 -2.5 0\nlook_at = 0 0 0\nup = 0 0 1\n"   \
+	"fov_deg = 30\n[render]\ntechnique = raycast\n"
 
 /* A frame maker over a volume whose back half has one value, and of whose front half the left side
  * has another. */
@@ -36,15 +43,23 @@ static const char *write_halves(void)
 	fclose(file);
 	write_in_place("halves.tf", "0 0 0 0 0\n0.4 1 0 0 0\n0.5 1 0 0 0.25\n0.6 1 0 0 0\n"
 				    "0.9 0 0 1 0.5\n1 0 0 1 0.5\n");
-	return write_in_place("halves.scene",
-			      "[volume]\nfile = halves.nrrd\n[transfer]\nfile = halves.tf\n"
-			      "[camera]\neye = 0 -2.5 0\nlook_at = 0 0 0\nup = 0 0 1\n"
-			      "fov_deg = 30\n[render]\ntechnique = raycast\n");
+	return write_in_place("halves.scene", HALVES_SCENE("halves.nrrd"));
 }
 
-static void begin_looking(struct looking *all)
+/* The same volume in a file of bricks. */
+static const char *write_bricked_halves(void)
 {
-	create_frames(&all->made, write_halves(), "cpu");
+	struct gz_volume volume;
+	(void)write_halves();
+	assert_int_equal(gz_volume_load(in_place("halves.nrrd"), NULL, NULL, NULL, &volume), GZ_OK);
+	assert_int_equal(gz_bricks_write(&volume, in_place("halves.gzb"), NULL, NULL), GZ_OK);
+	gz_volume_free(&volume);
+	return write_in_place("bricked.scene", HALVES_SCENE("halves.gzb"));
+}
+
+static void begin_looking(struct looking *all, const char *path)
+{
+	create_frames(&all->made, path, "cpu");
 	assert_int_equal(gz_frame_maker_start(all->made.maker, &all->made.options, NULL), GZ_OK);
 	all->attention = gz_attention_default();
 	all->attention.importance = 1;
@@ -72,11 +87,10 @@ static bool holds_value(const struct gz_raised *raised, double value)
 }
 
 /* What stands out makes all else fade: the left front would be looked through for ever. */
-static void the_gaze_finds_what_is_in_front_of_raised_values(void **state)
+static void check_front_and_back(const char *path)
 {
 	struct looking all = { 0 };
-	(void)state;
-	begin_looking(&all);
+	begin_looking(&all, path);
 	const struct gz_raised back = look_at_place(&all, 0.6F);
 	assert_true(holds_value(&back, BACK_SHARE) && !holds_value(&back, FRONT_SHARE));
 	assert_float_equal(back.share, 1, 1e-12);
@@ -86,12 +100,24 @@ static void the_gaze_finds_what_is_in_front_of_raised_values(void **state)
 	gz_frame_maker_destroy(&all.made.maker);
 }
 
+static void the_gaze_finds_what_is_in_front_of_raised_values(void **state)
+{
+	(void)state;
+	check_front_and_back(write_halves());
+}
+
+static void values_of_bricks_are_found_and_raised(void **state)
+{
+	(void)state;
+	check_front_and_back(write_bricked_halves());
+}
+
 /* Values that looked alike by another function are not raised in the new one. */
 static void another_function_raises_nothing_of_the_old_one(void **state)
 {
 	struct looking all = { 0 };
 	(void)state;
-	begin_looking(&all);
+	begin_looking(&all, write_halves());
 	const struct gz_raised before = look_at_place(&all, 0.6F);
 	assert_true(before.share > 0);
 	assert_true(gz_frame_transfer(all.made.maker)->emphasis.share > 0);
@@ -116,6 +142,7 @@ TEST_SUITE(looked_at)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_gaze_finds_what_is_in_front_of_raised_values),
+		cmocka_unit_test(values_of_bricks_are_found_and_raised),
 		cmocka_unit_test(another_function_raises_nothing_of_the_old_one),
 	};
 	return cmocka_run_group_tests(tests, open_place, remove_place);

@@ -5,12 +5,12 @@
 #include "render/raycast/shared/ray_params.h"
 #include "render/section/section.h"
 
-/* The object whose matter rays pass; NULL: there is none, or its voxels cannot be read. */
+/* The object whose matter rays pass; NULL: there is none. */
 static const struct gz_object *find_clear_object(const struct gz_object *objects, size_t count)
 {
 	for (size_t i = 0; i < count; i++)
 		if (objects[i].technique->sharing == GZ_SHARES_AS_CLEAR && objects[i].volume &&
-		    objects[i].transfer && gz_section_possible(objects[i].volume))
+		    objects[i].transfer)
 			return &objects[i];
 	return NULL;
 }

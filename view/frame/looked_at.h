@@ -14,8 +14,8 @@
  * Find what is seen most at a place. Of a volume that rays pass, it is a range of values: of labels
  * the one label, otherwise what its transfer function shows as one thing around the value that is
  * seen (gz_section_look(), gz_transfer_find_alike()), in both cases without the function's
- * emphasis, so that what is raised does not decide what is seen. Volumes of bricks are not found:
- * their voxels are not wholly in memory.
+ * emphasis, so that what is raised does not decide what is seen. Of a volume of bricks, those in
+ * memory are looked at.
  *
  * @param pictures  shows the objects
  * @param objects   @p count of them
