@@ -15,6 +15,10 @@
 #define PIXELS_PER_POINT    6.5
 /* Points whose distance strokes have, of those. Chosen: tracing takes three times as long. */
 #define STROKES_PER_POINT 0.5
+/* Several objects hide parts of each other, so that the marks of what is seen are few. They have
+ * more points, by the area of all for the area of the box around them, up to so many times. Chosen:
+ * the 116 regions of an atlas have four times as many. */
+#define CROWD_MOST 4.0
 /* Fewest points of an object. Chosen: a small one has a tone, too. */
 #define POINTS_LEAST 500
 
@@ -127,6 +131,33 @@ static enum gz_result fill_task(const struct gz_illustrate_scene *scene, size_t 
 	return gz_mesh_copy(mesh, &task->mesh);
 }
 
+/* The area of the box around all objects. */
+static double area_around(const struct gz_illustrate_scene *scene)
+{
+	float least[3] = { INFINITY, INFINITY, INFINITY };
+	float greatest[3] = { -INFINITY, -INFINITY, -INFINITY };
+	double edge[3];
+	for (size_t i = 0; i < scene->count; i++) {
+		const struct gz_mesh *mesh = &scene->meshes.shown[i];
+		for (size_t k = 0; k < mesh->vertex_count; k++)
+			for (int axis = 0; axis < 3; axis++) {
+				const float at = mesh->positions[k][axis];
+				least[axis] = fminf(least[axis], at);
+				greatest[axis] = fmaxf(greatest[axis], at);
+			}
+	}
+	for (int axis = 0; axis < 3; axis++)
+		edge[axis] = fmax(0, (double)greatest[axis] - (double)least[axis]);
+	return 2 * (edge[0] * edge[1] + edge[1] * edge[2] + edge[2] * edge[0]);
+}
+
+/* How many times as many points several objects have as one. */
+static double crowd_of(const struct gz_illustrate_scene *scene, double area)
+{
+	const double around = scene->count > 1 ? area_around(scene) : 0;
+	return around > 0 ? fmin(fmax(area / around, 1), CROWD_MOST) : 1;
+}
+
 /* How many points each task has: by its share of the area of all objects. */
 static enum gz_result share_points(const struct gz_illustrate_scene *scene,
 				   struct gz_marks_order *order)
@@ -138,11 +169,12 @@ static enum gz_result share_points(const struct gz_illustrate_scene *scene,
 		areas[i] = area_of_mesh(&scene->meshes.shown[i]);
 		area += areas[i];
 	}
+	const double in_all = order->in_all * crowd_of(scene, area);
 	for (size_t i = 0; i < order->count; i++) {
 		struct gz_marks_task *task = &order->tasks[i];
 		const double part = area > 0 ? areas[task->item] / area : 0;
 		const double share = task->kind == GZ_DRAWING_STIPPLES ? 1 : STROKES_PER_POINT;
-		task->points = (size_t)fmax(POINTS_LEAST, order->in_all * share * part);
+		task->points = (size_t)fmax(POINTS_LEAST, in_all * share * part);
 	}
 	free(areas);
 	return GZ_OK;
