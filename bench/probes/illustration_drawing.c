@@ -16,8 +16,8 @@
 #include "base/workers.h"
 #include "drawing_planes.h"
 #include "render/illustration/cached_points.h"
-#include "render/illustration/hatch_balance.h"
 #include "render/illustration/hatch_lines.h"
+#include "render/illustration/mark_balance.h"
 #include "render/illustration/stipple_points.h"
 #include "render/illustration/stipple_svg.h"
 #include "render/mesh/mesh_read.h"
@@ -94,7 +94,7 @@ struct drawing_state {
 	struct drawing_planes planes;
 	struct gz_stipple_discs discs;
 	struct gz_hatch_lines lines;
-	struct gz_hatch_balance balance;
+	struct gz_mark_balance balance;
 	struct gz_stipple_sheet sheet;
 	double world_per_mm;
 	struct gz_camera camera;
@@ -213,13 +213,13 @@ static void print_times(const char *what, double times_ms[RUNS])
 static enum gz_result balance_lines(struct drawing_state *state, const struct gz_stipple_view *view)
 {
 	static const bool hatched[1] = { true };
-	const struct gz_hatch_target target = { .tone = view->tone,
-						.ids = view->ids,
-						.hatched = hatched,
-						.hatched_count = 1,
-						.size_px = view->size_px };
-	return gz_hatch_balance_lines(&state->balance, &target, state->lines.pieces,
-				      state->lines.count, state->workers);
+	const struct gz_mark_target target = { .tone = view->tone,
+					       .ids = view->ids,
+					       .drawn = hatched,
+					       .drawn_count = 1,
+					       .size_px = view->size_px };
+	return gz_mark_balance_lines(&state->balance, &target, state->lines.pieces,
+				     state->lines.count, state->workers);
 }
 
 static enum gz_result choose_once(struct drawing_state *state, const struct gz_stipple_view *view,
@@ -437,7 +437,7 @@ int main(int argc, char **argv)
 	gz_hatch_strokes_free(&state.strokes[0]);
 	gz_hatch_strokes_free(&state.strokes[1]);
 	gz_hatch_lines_free(&state.lines);
-	gz_hatch_balance_free(&state.balance);
+	gz_mark_balance_free(&state.balance);
 	gz_workers_destroy(&state.workers);
 	drawing_planes_free(&state.planes);
 	gz_stipple_discs_free(&state.discs);

@@ -1,4 +1,4 @@
-#include "render/illustration/hatch_balance.h"
+#include "render/illustration/mark_balance.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,9 +13,10 @@ enum {
 	PART_PIECES = 4096,
 };
 
-/* Distance of the lattice's points, in widths of lines, and at least. Chosen: a tent has some lines
- * at most tones, and squares of 32 px have some tents. */
+/* Distance of the lattice's points, in widths of lines or discs, and at least. Chosen: a tent has
+ * some marks at most tones, and squares of 32 px have some tents. */
 #define CELL_WIDTHS   6.0
+#define CELL_DISCS    8.0
 #define CELL_LEAST_PX 8.0
 
 /* What is summed over the tents of a level. */
@@ -25,10 +26,12 @@ struct tent_level {
 };
 
 struct balancing {
-	const struct gz_hatch_target *target;
-	struct gz_hatch_balance *balance;
-	struct gz_stipple_piece *pieces;
+	const struct gz_mark_target *target;
+	struct gz_mark_balance *balance;
+	struct gz_stipple_piece *pieces; /* the marks; NULL: discs */
+	struct gz_stipple_disc *discs;
 	size_t count;
+	float change_most;       /* most that a factor is multiplied or divided by */
 	int width, height, cell; /* of the picture, and the distance of the lattice's points, px */
 	int level_count;
 	struct tent_level levels[LEVELS_MAX];
@@ -51,10 +54,10 @@ static void run_parts(struct balancing *balancing, gz_workers_part *part, size_t
 			part(balancing, i, 0);
 }
 
-static bool is_hatched(const struct gz_hatch_target *target, size_t pixel)
+static bool is_drawn(const struct gz_mark_target *target, size_t pixel)
 {
 	const size_t id = target->ids->words[pixel];
-	return id >= 1 && id <= target->hatched_count && target->hatched[id - 1];
+	return id >= 1 && id <= target->drawn_count && target->drawn[id - 1];
 }
 
 /* The ink that a pixel is to have, in units of 1/255, rounded. */
@@ -69,12 +72,12 @@ static uint8_t ink_wanted(const struct gz_plane *tone, size_t pixel)
 static void take_rows(void *user, size_t part, int worker)
 {
 	const struct balancing *balancing = user;
-	const struct gz_hatch_balance *balance = balancing->balance;
+	const struct gz_mark_balance *balance = balancing->balance;
 	const size_t width = (size_t)balancing->width, pixels = width * (size_t)balancing->height;
 	const size_t end = (part + 1) * PART_ROWS * width;
 	(void)worker;
 	for (size_t i = part * PART_ROWS * width; i < end && i < pixels; i++) {
-		const bool counts = is_hatched(balancing->target, i);
+		const bool counts = is_drawn(balancing->target, i);
 		balance->mask[i] = counts;
 		balance->wanted[i] = counts ? ink_wanted(balancing->target->tone, i) : 0;
 	}
@@ -192,7 +195,14 @@ static struct tent_sums wider_sums(const struct tent_level *level, int column, i
 	};
 }
 
-/* How much denser the lines around a point must be. Where much of a tent does not count, as at
+/* The marks' area for each area of the picture that covers a share of the paper. */
+static float density_of(const struct balancing *balancing, float ink)
+{
+	return balancing->discs ? gz_stipple_density(ink, 1, (float)balancing->target->size_px / 2)
+				: gz_hatch_density(ink);
+}
+
+/* How much denser the marks around a point must be. Where much of a tent does not count, as at
  * rims, few lines would tell, and come and go as the view turns: the wider tents fill in for it. */
 static float ratio_of_point(const struct balancing *balancing, int level, int column, int row)
 {
@@ -210,9 +220,9 @@ static float ratio_of_point(const struct balancing *balancing, int level, int co
 	}
 	if (!(sums.area > 0) || !(sums.wanted > 0))
 		return 1;
-	const float wanted = gz_hatch_density(sums.wanted / sums.area / 255);
-	const float drawn = gz_hatch_density(sums.drawn / sums.area / 255);
-	return drawn > 0 ? wanted / drawn : GZ_HATCH_WIDTH_CHANGE;
+	const float wanted = density_of(balancing, sums.wanted / sums.area / 255);
+	const float drawn = density_of(balancing, sums.drawn / sums.area / 255);
+	return drawn > 0 ? wanted / drawn : balancing->change_most;
 }
 
 /* That of a level's ratios, which lie in level->drawn, at a point of the lattice. */
@@ -257,8 +267,8 @@ static void change_factors(struct balancing *balancing)
 				ratio +=
 					share * (ratio_at(balancing, low + 1, column, row) - ratio);
 			float *factor = &balancing->factors[row * lattice->columns + column];
-			*factor = fminf(fmaxf(*factor * ratio, 1 / GZ_HATCH_WIDTH_CHANGE),
-					GZ_HATCH_WIDTH_CHANGE);
+			*factor = fminf(fmaxf(*factor * ratio, 1 / balancing->change_most),
+					balancing->change_most);
 		}
 }
 
@@ -285,22 +295,46 @@ static void change_widths(void *user, size_t part, int worker)
 	}
 }
 
-/* Draws the lines, and changes their widths by what they draw. */
-static enum gz_result run_round(struct balancing *balancing, struct gz_workers *workers)
+static void change_radii(void *user, size_t part, int worker)
+{
+	const struct balancing *balancing = user;
+	const size_t end = (part + 1) * PART_PIECES;
+	(void)worker;
+	for (size_t i = part * PART_PIECES; i < end && i < balancing->count; i++) {
+		struct gz_stipple_disc *disc = &balancing->discs[i];
+		const float place[2] = { disc->x, disc->y };
+		disc->radius =
+			fminf(balancing->balance->widths[i] * sqrtf(factor_at(balancing, place)),
+			      GZ_STIPPLE_MARK_MAX_PX);
+	}
+}
+
+static enum gz_result draw_marks(struct balancing *balancing, struct gz_workers *workers)
 {
 	struct gz_stipple_sheet *sheet = &balancing->balance->sheet;
-	enum gz_result result = gz_stipple_sheet_clear(sheet, balancing->width, balancing->height);
-	if (result == GZ_OK)
-		result = gz_stipple_sheet_add_pieces(sheet, balancing->pieces, balancing->count,
-						     workers);
+	const enum gz_result result =
+		gz_stipple_sheet_clear(sheet, balancing->width, balancing->height);
+	if (result != GZ_OK)
+		return result;
+	return balancing->discs ? gz_stipple_sheet_add_discs(sheet, balancing->discs,
+							     balancing->count, workers)
+				: gz_stipple_sheet_add_pieces(sheet, balancing->pieces,
+							      balancing->count, workers);
+}
+
+/* Draws the marks, and changes their sizes by what they draw. */
+static enum gz_result run_round(struct balancing *balancing, struct gz_workers *workers)
+{
+	const struct gz_stipple_sheet *sheet = &balancing->balance->sheet;
+	const enum gz_result result = draw_marks(balancing, workers);
 	if (result != GZ_OK)
 		return result;
 	balancing->summed = sheet->ink;
 	balancing->summed_stride = sheet->stride;
 	sum_lattice(balancing, balancing->levels[0].drawn, workers);
 	change_factors(balancing);
-	run_parts(balancing, change_widths, (balancing->count + PART_PIECES - 1) / PART_PIECES,
-		  workers);
+	run_parts(balancing, balancing->discs ? change_radii : change_widths,
+		  (balancing->count + PART_PIECES - 1) / PART_PIECES, workers);
 	return GZ_OK;
 }
 
@@ -330,7 +364,7 @@ static int count_levels(const struct gz_stipple_scale *scale)
 /* Lays the lattice and all sums out in one block. */
 static bool make_levels(struct balancing *balancing)
 {
-	struct gz_hatch_balance *balance = balancing->balance;
+	struct gz_mark_balance *balance = balancing->balance;
 	size_t floats = 0;
 	int columns = (balancing->width - 1) / balancing->cell + 2;
 	int rows = (balancing->height - 1) / balancing->cell + 2;
@@ -362,7 +396,7 @@ static bool make_levels(struct balancing *balancing)
 	return true;
 }
 
-static bool target_fits(const struct gz_hatch_target *target)
+static bool target_fits(const struct gz_mark_target *target)
 {
 	const struct gz_plane *tone = target->tone, *ids = target->ids;
 	return tone->kind == GZ_PLANE_VALUE && ids->kind == GZ_PLANE_ID && tone->width >= 1 &&
@@ -373,7 +407,7 @@ static bool target_fits(const struct gz_hatch_target *target)
 /* What is wanted, at all widths of tents. */
 static void sum_wanted(struct balancing *balancing, struct gz_workers *workers)
 {
-	const struct gz_hatch_balance *balance = balancing->balance;
+	const struct gz_mark_balance *balance = balancing->balance;
 	struct tent_level *levels = balancing->levels;
 	run_parts(balancing, take_rows, ((size_t)balancing->height + PART_ROWS - 1) / PART_ROWS,
 		  workers);
@@ -393,7 +427,7 @@ static void sum_wanted(struct balancing *balancing, struct gz_workers *workers)
 
 static bool make_room(struct balancing *balancing)
 {
-	struct gz_hatch_balance *balance = balancing->balance;
+	struct gz_mark_balance *balance = balancing->balance;
 	const size_t pixels = (size_t)balancing->width * (size_t)balancing->height;
 	return reserve_room((void **)&balance->mask, &balance->mask_size, pixels) &&
 	       reserve_room((void **)&balance->wanted, &balance->wanted_size, pixels) &&
@@ -402,40 +436,74 @@ static bool make_room(struct balancing *balancing)
 	       make_levels(balancing);
 }
 
-enum gz_result gz_hatch_balance_lines(struct gz_hatch_balance *balance,
-				      const struct gz_hatch_target *target,
-				      struct gz_stipple_piece *pieces, size_t count,
-				      struct gz_workers *workers)
+/* Remembers the sizes of marks. */
+static void note_sizes(const struct balancing *balancing)
 {
-	struct balancing balancing = {
-		.target = target, .balance = balance, .pieces = pieces, .count = count
-	};
+	float *sizes = balancing->balance->widths;
+	for (size_t i = 0; i < balancing->count; i++) {
+		if (balancing->discs) {
+			sizes[i] = balancing->discs[i].radius;
+			continue;
+		}
+		sizes[2 * i] = balancing->pieces[i].from_width;
+		sizes[2 * i + 1] = balancing->pieces[i].to_width;
+	}
+}
+
+static enum gz_result balance_marks(struct balancing *balancing, struct gz_workers *workers)
+{
+	const struct gz_mark_target *target = balancing->target;
 	if (!target_fits(target))
 		return GZ_ERR_INVAL;
-	if (count == 0)
+	if (balancing->count == 0)
 		return GZ_OK;
-	balancing.width = target->tone->width;
-	balancing.height = target->tone->height;
-	balancing.cell = (int)ceil(fmax(CELL_LEAST_PX, CELL_WIDTHS * target->size_px));
-	if (!make_room(&balancing))
+	const double widths = balancing->discs ? CELL_DISCS : CELL_WIDTHS;
+	balancing->width = target->tone->width;
+	balancing->height = target->tone->height;
+	balancing->cell = (int)ceil(fmax(CELL_LEAST_PX, widths * target->size_px));
+	if (!make_room(balancing))
 		return GZ_ERR_NO_MEM;
-	for (size_t i = 0; i < count; i++) {
-		balance->widths[2 * i] = pieces[i].from_width;
-		balance->widths[2 * i + 1] = pieces[i].to_width;
-	}
-	sum_wanted(&balancing, workers);
+	note_sizes(balancing);
+	sum_wanted(balancing, workers);
 	enum gz_result result = GZ_OK;
-	for (int round = 0; round < GZ_HATCH_ROUNDS && result == GZ_OK; round++)
-		result = run_round(&balancing, workers);
+	for (int round = 0; round < GZ_MARK_ROUNDS && result == GZ_OK; round++)
+		result = run_round(balancing, workers);
 	return result;
 }
 
-void gz_hatch_balance_free(struct gz_hatch_balance *balance)
+enum gz_result gz_mark_balance_lines(struct gz_mark_balance *balance,
+				     const struct gz_mark_target *target,
+				     struct gz_stipple_piece *pieces, size_t count,
+				     struct gz_workers *workers)
+{
+	struct balancing balancing = { .target = target,
+				       .balance = balance,
+				       .pieces = pieces,
+				       .count = count,
+				       .change_most = GZ_HATCH_WIDTH_CHANGE };
+	return balance_marks(&balancing, workers);
+}
+
+enum gz_result gz_mark_balance_discs(struct gz_mark_balance *balance,
+				     const struct gz_mark_target *target,
+				     struct gz_stipple_disc *discs, size_t count,
+				     struct gz_workers *workers)
+{
+	struct balancing balancing = { .target = target,
+				       .balance = balance,
+				       .discs = discs,
+				       .count = count,
+				       .change_most = GZ_STIPPLE_RADIUS_CHANGE *
+						      GZ_STIPPLE_RADIUS_CHANGE };
+	return balance_marks(&balancing, workers);
+}
+
+void gz_mark_balance_free(struct gz_mark_balance *balance)
 {
 	gz_stipple_sheet_free(&balance->sheet);
 	free(balance->mask);
 	free(balance->wanted);
 	free(balance->widths);
 	free(balance->sums);
-	*balance = (struct gz_hatch_balance) { 0 };
+	*balance = (struct gz_mark_balance) { 0 };
 }

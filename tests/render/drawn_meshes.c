@@ -3,13 +3,14 @@
 #include "suite.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
 
 #define PI 3.14159265358979323846
 
-enum { COLUMNS = 64, ROWS = 32 };
+enum { COLUMNS = 64, ROWS = 32, STROKE_POINTS = 20000 };
 
 static void place_vertex(enum drawn_body body, double u, double v, float place[3], float normal[3])
 {
@@ -44,6 +45,38 @@ struct gz_mesh drawn_mesh(enum drawn_body body)
 		memcpy(mesh.triangles[2 * (size_t)i], both, sizeof both);
 	}
 	return mesh;
+}
+
+/* Directions that go round the y axis. */
+static void find_directions(const struct gz_mesh *mesh, float (*directions)[3])
+{
+	for (size_t i = 0; i < mesh->vertex_count; i++) {
+		const float sign = i % 2 ? -1 : 1; /* it does not count */
+		directions[i][0] = sign * mesh->normals[i][2];
+		directions[i][1] = 0;
+		directions[i][2] = -sign * mesh->normals[i][0];
+	}
+}
+
+enum gz_result drawn_strokes_make(const struct gz_mesh *mesh, int layers,
+				  struct gz_hatch_strokes *out_strokes)
+{
+	struct gz_mesh_points points;
+	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
+	assert_non_null(directions);
+	find_directions(mesh, directions);
+	const enum gz_result made = gz_mesh_points_make(mesh, STROKE_POINTS, NULL, NULL, &points);
+	enum gz_result result = made;
+	for (int layer = 0; layer < layers && result == GZ_OK; layer++) {
+		if (layer == 1)
+			gz_hatch_cross_directions(mesh, (const float(*)[3])directions, directions);
+		result = gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points,
+					       DRAWN_STROKE_MM, NULL, &out_strokes[layer]);
+	}
+	free(directions);
+	if (made == GZ_OK)
+		gz_mesh_points_free(&points);
+	return result;
 }
 
 void drawn_set_value(struct gz_plane *plane, int x, int y, float value)

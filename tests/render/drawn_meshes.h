@@ -6,6 +6,7 @@
 #ifndef GZ_TESTS_RENDER_DRAWN_MESHES_H
 #define GZ_TESTS_RENDER_DRAWN_MESHES_H
 
+#include "render/illustration/hatch_strokes.h"
 #include "render/illustration/stipple_view.h"
 #include "render/mesh/mesh.h"
 #include "render/picture/camera.h"
@@ -20,6 +21,19 @@ enum drawn_body { DRAWN_BOARD, DRAWN_BALL };
 
 /** Make the mesh of a body. */
 struct gz_mesh drawn_mesh(enum drawn_body body);
+
+/** Distance of the nodes of a stroke of drawn_strokes_make(), mm. */
+#define DRAWN_STROKE_MM 0.8
+
+/**
+ * Trace strokes over the mesh of a body.
+ *
+ * @param layers  1: those round the y axis; 2: others that cross them, too
+ * @param[out] out_strokes  of each layer; the caller frees them with gz_hatch_strokes_free()
+ * @return what gz_mesh_points_make() or gz_hatch_strokes_make() returns
+ */
+enum gz_result drawn_strokes_make(const struct gz_mesh *mesh, int layers,
+				  struct gz_hatch_strokes *out_strokes);
 
 /** A picture of a body. */
 struct drawn_picture {

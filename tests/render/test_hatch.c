@@ -14,48 +14,15 @@
 
 enum { POINTS = 20000, EDGE = 200 };
 
-#define DISTANCE_MM 0.8
-
 static struct gz_mesh meshes[2];
 static struct gz_hatch_strokes strokes_of[2];
-
-/* Directions that go round the y axis. */
-static void make_directions(const struct gz_mesh *mesh, float (*directions)[3])
-{
-	for (size_t i = 0; i < mesh->vertex_count; i++) {
-		directions[i][0] = mesh->normals[i][2];
-		directions[i][1] = 0;
-		directions[i][2] = -mesh->normals[i][0];
-		if (i % 2) /* the sign does not count */
-			for (int axis = 0; axis < 3; axis++)
-				directions[i][axis] = -directions[i][axis];
-	}
-}
-
-static enum gz_result trace_body(enum drawn_body body, struct gz_hatch_strokes *out_strokes)
-{
-	const struct gz_mesh *mesh = &meshes[body];
-	struct gz_mesh_points points;
-	float(*directions)[3] = malloc(mesh->vertex_count * sizeof *directions);
-	if (!directions)
-		return GZ_ERR_NO_MEM;
-	make_directions(mesh, directions);
-	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, NULL, &points);
-	if (result == GZ_OK)
-		result = gz_hatch_strokes_make(mesh, (const float(*)[3])directions, &points,
-					       DISTANCE_MM, NULL, out_strokes);
-	free(directions);
-	if (result == GZ_OK)
-		gz_mesh_points_free(&points);
-	return result;
-}
 
 static int make_strokes(void **state)
 {
 	(void)state;
 	for (int body = 0; body < 2; body++) {
 		meshes[body] = drawn_mesh((enum drawn_body)body);
-		if (trace_body((enum drawn_body)body, &strokes_of[body]) != GZ_OK)
+		if (drawn_strokes_make(&meshes[body], 1, &strokes_of[body]) != GZ_OK)
 			return -1;
 	}
 	return 0;
@@ -104,7 +71,7 @@ static void nodes_of_a_stroke_follow_each_other(void **state)
 					square += pow((double)nodes[k].place[axis] -
 							      (double)nodes[k - 1].place[axis],
 						      2);
-				assert_true(sqrt(square) < 1.01 * DISTANCE_MM);
+				assert_true(sqrt(square) < 1.01 * DRAWN_STROKE_MM);
 			}
 		}
 	}
@@ -159,7 +126,7 @@ static void stroke_knows_the_length_before_it(void **state)
 			sum += hypot((double)to->place[0] - (double)to[-1].place[0],
 				     (double)to->place[1] - (double)to[-1].place[1]);
 		}
-		sum -= GZ_HATCH_POINTED * DISTANCE_MM;
+		sum -= GZ_HATCH_POINTED * DRAWN_STROKE_MM;
 	}
 	assert_float_equal(strokes->length_mm, sum, 1e-3 * sum);
 }

@@ -1,5 +1,5 @@
-/* Lines are as dark as the shading map in every square of a picture, wherever strokes run together
- * or leave gaps, and stay where they are. */
+/* Marks are as dark as the shading map in every square of a picture, wherever strokes run together,
+ * leave gaps or points are few, and stay where they are. */
 #include "suite.h"
 
 #include <math.h>
@@ -8,13 +8,12 @@
 
 #include "base/workers.h"
 #include "drawn_meshes.h"
-#include "render/illustration/hatch_balance.h"
 #include "render/illustration/hatch_lines.h"
+#include "render/illustration/mark_balance.h"
+#include "render/illustration/stipple_points.h"
 #include "render/mesh/mesh_points.h"
 
-enum { POINTS = 20000, EDGE = 320, SQUARE = 32 };
-
-#define DISTANCE_MM 0.8
+enum { POINTS = 40000, EDGE = 320, SQUARE = 32 };
 
 /* How far the ink of a square may be from the map's, with lines of a width: what the documents
  * state. A line along the side of a square that lies just within it or just beside it makes a
@@ -29,24 +28,16 @@ static struct gz_mesh meshes[2];
  * that cross them. */
 static struct gz_hatch_strokes strokes_of[2][2];
 
-static enum gz_result trace_body(enum drawn_body body)
+/* Points of each body. */
+static struct gz_stipple_points points_of[2];
+
+static enum gz_result spread_points(enum drawn_body body)
 {
-	const struct gz_mesh *mesh = &meshes[body];
 	struct gz_mesh_points points;
-	float(*around)[3] = calloc(mesh->vertex_count, sizeof *around);
-	enum gz_result result = gz_mesh_points_make(mesh, POINTS, NULL, NULL, &points);
-	assert_non_null(around);
-	for (size_t i = 0; i < mesh->vertex_count; i++) {
-		around[i][0] = mesh->normals[i][2];
-		around[i][2] = -mesh->normals[i][0];
-	}
-	for (int layer = 0; layer < 2 && result == GZ_OK; layer++) {
-		if (layer == 1)
-			gz_hatch_cross_directions(mesh, (const float(*)[3])around, around);
-		result = gz_hatch_strokes_make(mesh, (const float(*)[3])around, &points,
-					       DISTANCE_MM, NULL, &strokes_of[body][layer]);
-	}
-	free(around);
+	enum gz_result result = gz_mesh_points_make(&meshes[body], POINTS, NULL, NULL, &points);
+	if (result != GZ_OK)
+		return result;
+	result = gz_stipple_points_make(&meshes[body], &points, &points_of[body]);
 	gz_mesh_points_free(&points);
 	return result;
 }
@@ -56,7 +47,8 @@ static int make_strokes(void **state)
 	(void)state;
 	for (int body = 0; body < 2; body++) {
 		meshes[body] = drawn_mesh((enum drawn_body)body);
-		if (trace_body((enum drawn_body)body) != GZ_OK)
+		if (drawn_strokes_make(&meshes[body], 2, strokes_of[body]) != GZ_OK ||
+		    spread_points((enum drawn_body)body) != GZ_OK)
 			return -1;
 	}
 	return 0;
@@ -67,6 +59,7 @@ static int free_strokes(void **state)
 	(void)state;
 	for (int body = 0; body < 2; body++) {
 		gz_mesh_free(&meshes[body]);
+		gz_stipple_points_free(&points_of[body]);
 		for (int layer = 0; layer < 2; layer++)
 			gz_hatch_strokes_free(&strokes_of[body][layer]);
 	}
@@ -77,7 +70,8 @@ static int free_strokes(void **state)
 struct hatched_picture {
 	struct drawn_picture picture;
 	struct gz_hatch_lines lines;
-	struct gz_hatch_balance balance;
+	struct gz_stipple_discs discs;
+	struct gz_mark_balance balance;
 	struct gz_stipple_sheet sheet;
 };
 
@@ -85,7 +79,8 @@ static void free_hatched(struct hatched_picture *hatched)
 {
 	drawn_picture_free(&hatched->picture);
 	gz_hatch_lines_free(&hatched->lines);
-	gz_hatch_balance_free(&hatched->balance);
+	gz_stipple_discs_free(&hatched->discs);
+	gz_mark_balance_free(&hatched->balance);
 	gz_stipple_sheet_free(&hatched->sheet);
 }
 
@@ -100,23 +95,23 @@ static void choose_lines(enum drawn_body body, struct hatched_picture *hatched)
 	assert_true(hatched->lines.count > 100);
 }
 
-static struct gz_hatch_target target_of(const struct hatched_picture *hatched)
+static struct gz_mark_target target_of(const struct hatched_picture *hatched)
 {
 	static const bool all[1] = { true };
 	const struct gz_stipple_view *view = &hatched->picture.view;
-	return (struct gz_hatch_target) { .tone = view->tone,
-					  .ids = view->ids,
-					  .hatched = all,
-					  .hatched_count = 1,
-					  .size_px = view->size_px,
-					  .scale = view->scale };
+	return (struct gz_mark_target) { .tone = view->tone,
+					 .ids = view->ids,
+					 .drawn = all,
+					 .drawn_count = 1,
+					 .size_px = view->size_px,
+					 .scale = view->scale };
 }
 
 static void balance_lines(struct hatched_picture *hatched, struct gz_workers *workers)
 {
-	const struct gz_hatch_target target = target_of(hatched);
-	assert_int_equal(gz_hatch_balance_lines(&hatched->balance, &target, hatched->lines.pieces,
-						hatched->lines.count, workers),
+	const struct gz_mark_target target = target_of(hatched);
+	assert_int_equal(gz_mark_balance_lines(&hatched->balance, &target, hatched->lines.pieces,
+					       hatched->lines.count, workers),
 			 GZ_OK);
 }
 
@@ -402,12 +397,12 @@ static void objects_that_are_not_hatched_do_not_count(void **state)
 	choose_lines(DRAWN_BOARD, &hatched);
 	struct gz_stipple_piece *pieces = hatched.lines.pieces;
 	const struct gz_stipple_piece first = pieces[0];
-	struct gz_hatch_target target = target_of(&hatched);
+	struct gz_mark_target target = target_of(&hatched);
 	static const bool none[1] = { false };
-	target.hatched = none;
-	assert_int_equal(gz_hatch_balance_lines(&hatched.balance, &target, pieces,
-						hatched.lines.count, NULL),
-			 GZ_OK);
+	target.drawn = none;
+	assert_int_equal(
+		gz_mark_balance_lines(&hatched.balance, &target, pieces, hatched.lines.count, NULL),
+		GZ_OK);
 	assert_memory_equal(&pieces[0], &first, sizeof first);
 	/* numbers that no object has, and tones that are none */
 	target = target_of(&hatched);
@@ -415,9 +410,9 @@ static void objects_that_are_not_hatched_do_not_count(void **state)
 		hatched.picture.ids.words[x] = x % 2 ? 77 : UINT32_MAX;
 		drawn_set_value(&hatched.picture.tone, x, 5, x % 2 ? NAN : -3);
 	}
-	assert_int_equal(gz_hatch_balance_lines(&hatched.balance, &target, pieces,
-						hatched.lines.count, NULL),
-			 GZ_OK);
+	assert_int_equal(
+		gz_mark_balance_lines(&hatched.balance, &target, pieces, hatched.lines.count, NULL),
+		GZ_OK);
 	for (size_t i = 0; i < hatched.lines.count; i++)
 		assert_true(isfinite(pieces[i].from_width) && isfinite(pieces[i].to_width));
 	free_hatched(&hatched);
@@ -432,21 +427,171 @@ static void targets_out_of_range_are_refused(void **state)
 	struct gz_stipple_piece piece = { .to = { 5, 5 }, .from_width = 1, .to_width = 1 };
 	drawn_picture_make(DRAWN_BOARD, &camera, EDGE, 0.5F, &hatched.picture);
 	assert_int_equal(gz_plane_resize(&small, GZ_PLANE_ID, 8, 8), GZ_OK);
-	struct gz_hatch_target target = target_of(&hatched);
+	struct gz_mark_target target = target_of(&hatched);
 	target.ids = &small;
-	assert_int_equal(gz_hatch_balance_lines(&hatched.balance, &target, &piece, 1, NULL),
+	assert_int_equal(gz_mark_balance_lines(&hatched.balance, &target, &piece, 1, NULL),
 			 GZ_ERR_INVAL);
 	target = target_of(&hatched);
 	target.size_px = 0;
-	assert_int_equal(gz_hatch_balance_lines(&hatched.balance, &target, &piece, 1, NULL),
+	assert_int_equal(gz_mark_balance_lines(&hatched.balance, &target, &piece, 1, NULL),
 			 GZ_ERR_INVAL);
 	target = target_of(&hatched);
-	assert_int_equal(gz_hatch_balance_lines(&hatched.balance, &target, &piece, 0, NULL), GZ_OK);
+	assert_int_equal(gz_mark_balance_lines(&hatched.balance, &target, &piece, 0, NULL), GZ_OK);
 	gz_plane_free(&small);
 	free_hatched(&hatched);
 }
 
-TEST_SUITE(hatch_balance)
+/* ---- discs ---- */
+
+static void choose_discs(enum drawn_body body, double radius_px, struct hatched_picture *hatched)
+{
+	hatched->picture.view.size_px = radius_px;
+	hatched->discs.count = 0;
+	assert_int_equal(
+		gz_stipple_choose(&points_of[body], &hatched->picture.view, NULL, &hatched->discs),
+		GZ_OK);
+	assert_true(hatched->discs.count > 100);
+}
+
+static void balance_discs(struct hatched_picture *hatched, struct gz_workers *workers)
+{
+	struct gz_mark_target target = target_of(hatched);
+	target.size_px = 2 * hatched->picture.view.size_px;
+	assert_int_equal(gz_mark_balance_discs(&hatched->balance, &target, hatched->discs.discs,
+					       hatched->discs.count, workers),
+			 GZ_OK);
+}
+
+static double worst_of_discs(struct hatched_picture *hatched)
+{
+	size_t squares;
+	assert_int_equal(gz_stipple_sheet_clear(&hatched->sheet, EDGE, EDGE), GZ_OK);
+	assert_int_equal(gz_stipple_sheet_add_discs(&hatched->sheet, hatched->discs.discs,
+						    hatched->discs.count, NULL),
+			 GZ_OK);
+	const double worst = worst_square(hatched, &squares);
+	assert_true(squares > 100);
+	return worst;
+}
+
+static void squares_of_discs_are_as_dark_as_the_map(void **state)
+{
+	(void)state;
+	struct hatched_picture hatched = { 0 };
+	const struct gz_camera camera = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 110, 25);
+	for (int body = 0; body < 2; body++)
+		for (int step = 1; step < 10; step++) {
+			const double ink = step / 10.0;
+			drawn_picture_make((enum drawn_body)body, &camera, EDGE, (float)(1 - ink),
+					   &hatched.picture);
+			choose_discs((enum drawn_body)body, 1.2, &hatched);
+			const double before = worst_of_discs(&hatched);
+			balance_discs(&hatched, NULL);
+			const double after = worst_of_discs(&hatched);
+			if (after > 0.05 || after > before)
+				fail_msg("body %d, ink %.1f: a square differs by %.3f, before by "
+					 "%.3f",
+					 body, ink, after, before);
+		}
+	free_hatched(&hatched);
+}
+
+static void only_radii_change_and_not_by_much(void **state)
+{
+	(void)state;
+	struct hatched_picture hatched = { 0 };
+	const struct gz_camera camera = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 150, 20);
+	drawn_picture_make(DRAWN_BALL, &camera, EDGE, 0.4F, &hatched.picture);
+	choose_discs(DRAWN_BALL, 1.2, &hatched);
+	const size_t count = hatched.discs.count;
+	struct gz_stipple_disc *before = malloc(count * sizeof *before);
+	assert_non_null(before);
+	memcpy(before, hatched.discs.discs, count * sizeof *before);
+	/* Half of the picture is to be white: discs there cannot become as small as that. */
+	for (int y = 0; y < EDGE; y++)
+		for (int x = 0; x < EDGE / 2; x++)
+			drawn_set_value(&hatched.picture.tone, x, y, 1);
+	balance_discs(&hatched, NULL);
+	float least = INFINITY;
+	for (size_t i = 0; i < count; i++) {
+		const struct gz_stipple_disc *now = &hatched.discs.discs[i];
+		const float ratio = now->radius / before[i].radius;
+		assert_true(now->x == before[i].x && now->y == before[i].y);
+		assert_true(ratio <= 1.001F * GZ_STIPPLE_RADIUS_CHANGE);
+		assert_true(ratio >= 0.999F / GZ_STIPPLE_RADIUS_CHANGE);
+		least = fminf(least, ratio);
+	}
+	assert_true(least < 1.01F / GZ_STIPPLE_RADIUS_CHANGE);
+	free(before);
+	free_hatched(&hatched);
+}
+
+/* The disc of a place in another view that is turned by little. */
+static const struct gz_stipple_disc *disc_near(const struct gz_stipple_discs *discs,
+					       const struct gz_stipple_disc *place)
+{
+	for (size_t i = 0; i < discs->count; i++)
+		if (hypotf(discs->discs[i].x - place->x, discs->discs[i].y - place->y) < 0.6F)
+			return &discs->discs[i];
+	return NULL;
+}
+
+static void radii_change_little_while_the_view_turns(void **state)
+{
+	(void)state;
+	enum { RIM = 16 };
+	struct hatched_picture views[2] = { 0 };
+	double changes = 0, most = 0;
+	size_t compared = 0;
+	for (int i = 0; i < 2; i++) {
+		const struct gz_camera camera =
+			drawn_camera(GZ_PROJECTION_ORTHOGRAPHIC, 90, 20 + 0.2 * i);
+		drawn_picture_make(DRAWN_BOARD, &camera, EDGE, 0.6F, &views[i].picture);
+		choose_discs(DRAWN_BOARD, 1.2, &views[i]);
+		balance_discs(&views[i], NULL);
+	}
+	for (size_t i = 0; i < views[0].discs.count; i++) {
+		const struct gz_stipple_disc *a = &views[0].discs.discs[i];
+		const struct gz_stipple_disc *b = disc_near(&views[1].discs, a);
+		const float rim = fminf(fminf(a->x, a->y), EDGE - fmaxf(a->x, a->y));
+		if (!b || rim < RIM)
+			continue;
+		const double change = fabs((double)b->radius - (double)a->radius);
+		changes += change;
+		most = fmax(most, change);
+		compared++;
+	}
+	assert_true(compared > views[0].discs.count / 2);
+	print_message("%zu radii change by %.4f px in the mean, by %.3f at most\n", compared,
+		      changes / (double)compared, most);
+	if (changes / (double)compared > 0.01 || most > 0.1)
+		fail_msg("%zu radii change by %.4f px in the mean, by %.3f at most", compared,
+			 changes / (double)compared, most);
+	for (int i = 0; i < 2; i++)
+		free_hatched(&views[i]);
+}
+
+static void discs_are_the_same_for_any_number_of_threads(void **state)
+{
+	(void)state;
+	struct hatched_picture hatched[2] = { 0 };
+	struct gz_workers *workers;
+	const struct gz_camera camera = drawn_camera(GZ_PROJECTION_PERSPECTIVE, 150, 10);
+	assert_int_equal(gz_workers_create(3, &workers), GZ_OK);
+	for (int i = 0; i < 2; i++) {
+		drawn_picture_make(DRAWN_BALL, &camera, EDGE, 0.3F, &hatched[i].picture);
+		choose_discs(DRAWN_BALL, 1.2, &hatched[i]);
+		balance_discs(&hatched[i], i == 0 ? NULL : workers);
+	}
+	assert_int_equal(hatched[0].discs.count, hatched[1].discs.count);
+	assert_memory_equal(hatched[0].discs.discs, hatched[1].discs.discs,
+			    hatched[0].discs.count * sizeof *hatched[0].discs.discs);
+	gz_workers_destroy(&workers);
+	for (int i = 0; i < 2; i++)
+		free_hatched(&hatched[i]);
+}
+
+TEST_SUITE(mark_balance)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_square_of_an_even_tone_is_as_dark_as_the_map),
@@ -459,6 +604,10 @@ TEST_SUITE(hatch_balance)
 		cmocka_unit_test(larger_lines_are_as_dark_as_the_map),
 		cmocka_unit_test(objects_that_are_not_hatched_do_not_count),
 		cmocka_unit_test(targets_out_of_range_are_refused),
+		cmocka_unit_test(squares_of_discs_are_as_dark_as_the_map),
+		cmocka_unit_test(only_radii_change_and_not_by_much),
+		cmocka_unit_test(radii_change_little_while_the_view_turns),
+		cmocka_unit_test(discs_are_the_same_for_any_number_of_threads),
 	};
 	return cmocka_run_group_tests(tests, make_strokes, free_strokes);
 }

@@ -1,8 +1,9 @@
 """Drawings of a real scene are as dark as its shading map in every square, and so is its print.
 
-drawing_tone.py GAZEVIEW SCENES-FOLDER
+drawing_tone.py GAZEVIEW SCENES-FOLDER [SCENE [OPTION...]]
 
-The scene is a skull from a CT. Without its data the test is skipped.
+The scene is a skull from a CT. Without its data the test is skipped. With another SCENE, and further
+options of gazeview, differences are only printed.
 """
 
 import os
@@ -15,15 +16,16 @@ import xml.etree.ElementTree as tree
 from picture import read_png, run
 
 GAZEVIEW, SCENES = sys.argv[1], sys.argv[2]
+OTHER, OPTIONS = sys.argv[3:4], sys.argv[4:]
 WIDTH, HEIGHT, SQUARE = 960, 768, 32
 PEN = 2  # px
 FINER = 4  # scan lines of a print for each row of pixels
 
 # How far the ink of a square may be from the map's: what docs/illustration.md states. A line along
 # the side of a square makes a difference of its width for the side.
-BOUNDS = {"stipples": 0.05, "hatches": PEN / SQUARE}
+BOUNDS = {"stipples": 0.035, "hatches": PEN / SQUARE}
 
-SCENE = os.path.join(SCENES, "fetched", "bone.scene")
+SCENE = OTHER[0] if OTHER else os.path.join(SCENES, "fetched", "bone.scene")
 
 
 def has_data():
@@ -101,17 +103,19 @@ class DrawingTone(unittest.TestCase):
         # without lines, whose ink is not that of the map
         done = run(GAZEVIEW, "--headless", SCENE, "--technique", "illustrate", "--backend", "cpu",
                    "--method", "standard", "--size", f"{WIDTH}x{HEIGHT}", "--shading_map.lines", "0",
-                   "--illustration.pen_width", PEN, "--illustration.drawing", drawing, *more)
+                   "--illustration.pen_width", PEN, "--illustration.drawing", drawing, *OPTIONS, *more)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def compare(self, drawing, drawn, wanted):
         squares = list(squares_of(wanted))
-        self.assertGreater(len(squares), 50)
+        self.assertGreater(len(squares), 0 if OTHER else 50)
         differences = [mean_of_square(drawn, *at) - mean_of_square(wanted, *at) for at in squares]
         worst = max(map(abs, differences))
         spread = (sum(d * d for d in differences) / len(squares)) ** 0.5
-        print(f"{drawing}: {len(squares)} squares, rms {spread:.4f}, worst {worst:.4f}")
-        self.assertLessEqual(worst, BOUNDS[drawing], drawing)
+        over = sum(abs(d) > 0.05 for d in differences)
+        print(f"{drawing}: {len(squares)} squares, rms {spread:.4f}, worst {worst:.4f}, {over} over 0.05")
+        if not OTHER:
+            self.assertLessEqual(worst, BOUNDS[drawing], drawing)
 
     def test_drawings_and_a_print_of_a_skull(self):
         self.draw("grey", "--out", self.path("grey.png"))
@@ -124,7 +128,7 @@ class DrawingTone(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not has_data():
+    if not OTHER and not has_data():
         print("needs the data of " + SCENE)
         sys.exit(77)
     unittest.main(argv=sys.argv[:1])

@@ -61,9 +61,12 @@ static enum gz_result make_id_room(struct gz_illustrate_drawing *drawing, size_t
 		return GZ_OK;
 	free(drawing->grey_ids);
 	free(drawing->hatched_ids);
+	free(drawing->stippled_ids);
 	drawing->grey_ids = malloc(ids * sizeof *drawing->grey_ids);
 	drawing->hatched_ids = malloc(ids * sizeof *drawing->hatched_ids);
-	drawing->ids_room = drawing->grey_ids && drawing->hatched_ids ? ids : 0;
+	drawing->stippled_ids = malloc(ids * sizeof *drawing->stippled_ids);
+	const bool complete = drawing->grey_ids && drawing->hatched_ids && drawing->stippled_ids;
+	drawing->ids_room = complete ? ids : 0;
 	return drawing->ids_room > 0 ? GZ_OK : GZ_ERR_NO_MEM;
 }
 
@@ -77,12 +80,14 @@ static enum gz_result sort_objects(struct gz_illustrate_drawing *drawing,
 		return result;
 	memset(drawing->grey_ids, 0, scene->id_count * sizeof *drawing->grey_ids);
 	memset(drawing->hatched_ids, 0, scene->id_count * sizeof *drawing->hatched_ids);
+	memset(drawing->stippled_ids, 0, scene->id_count * sizeof *drawing->stippled_ids);
 	for (size_t i = 0; i < scene->count; i++) {
 		const enum gz_illustration_drawing kind =
 			gz_illustrate_item_drawn(&scene->items[i], drawing->look);
 		const size_t index = scene->meshes.items[i].object.id - 1;
 		drawing->grey_ids[index] = kind == GZ_DRAWING_GREY;
 		drawing->hatched_ids[index] = kind == GZ_DRAWING_HATCHES;
+		drawing->stippled_ids[index] = kind == GZ_DRAWING_STIPPLES;
 		drawing->drawn = drawing->drawn || kind != GZ_DRAWING_GREY;
 		drawing->mixed = drawing->mixed || kind == GZ_DRAWING_GREY;
 	}
@@ -191,22 +196,33 @@ static enum gz_result choose_marks(struct gz_illustrate_drawing *drawing,
 	return result;
 }
 
-/* Make a layer's lines as dark as its tone around each place. @param first  of its lines */
+/* Make a layer's marks as dark as its tone around each place. @param first_disc, first_line  of the
+ * layer */
 static enum gz_result balance_layer(struct gz_illustrate_drawing *drawing,
 				    const struct gz_illustrate_scene *scene,
 				    const struct gz_plane *tone, const struct gz_plane *ids,
-				    size_t first, struct gz_workers *workers)
+				    size_t first_disc, size_t first_line,
+				    struct gz_workers *workers)
 {
-	const struct gz_hatch_target target = {
+	struct gz_mark_target target = {
 		.tone = tone,
 		.ids = ids,
-		.hatched = drawing->hatched_ids,
-		.hatched_count = scene->id_count,
+		.drawn = drawing->stippled_ids,
+		.drawn_count = scene->id_count,
 		.size_px = fmin(fmax(drawing->pen_px, MARK_LEAST_PX), MARK_MOST_PX),
 		.scale = drawing->scale.factors ? &drawing->scale : NULL,
 	};
-	return gz_hatch_balance_lines(&drawing->balance, &target, drawing->lines.pieces + first,
-				      drawing->lines.count - first, workers);
+	enum gz_result result = GZ_OK;
+	if (drawing->discs.count > first_disc)
+		result = gz_mark_balance_discs(&drawing->balance, &target,
+					       drawing->discs.discs + first_disc,
+					       drawing->discs.count - first_disc, workers);
+	target.drawn = drawing->hatched_ids;
+	if (result == GZ_OK && drawing->lines.count > first_line)
+		result = gz_mark_balance_lines(&drawing->balance, &target,
+					       drawing->lines.pieces + first_line,
+					       drawing->lines.count - first_line, workers);
+	return result;
 }
 
 enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
@@ -216,7 +232,7 @@ enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
 {
 	enum gz_result result = GZ_OK;
 	const struct gz_plane tone = take_layer(drawing, layer); /* whose words are another's */
-	const size_t first_line = drawing->lines.count;
+	const size_t first_disc = drawing->discs.count, first_line = drawing->lines.count;
 	if (drawing->mixed)
 		add_grey(drawing, scene, &tone, layer->ids);
 	for (size_t i = 0; i < scene->count && result == GZ_OK; i++) {
@@ -233,8 +249,9 @@ enum gz_result gz_illustrate_drawing_add(struct gz_illustrate_drawing *drawing,
 		};
 		result = choose_marks(drawing, &scene->items[i], &view, workers);
 	}
-	if (result == GZ_OK && drawing->lines.count > first_line)
-		result = balance_layer(drawing, scene, &tone, layer->ids, first_line, workers);
+	if (result == GZ_OK)
+		result = balance_layer(drawing, scene, &tone, layer->ids, first_disc, first_line,
+				       workers);
 	return result;
 }
 
@@ -290,7 +307,7 @@ void gz_illustrate_drawing_free(struct gz_illustrate_drawing *drawing)
 	gz_stipple_scale_free(&drawing->scale);
 	gz_stipple_discs_free(&drawing->discs);
 	gz_hatch_lines_free(&drawing->lines);
-	gz_hatch_balance_free(&drawing->balance);
+	gz_mark_balance_free(&drawing->balance);
 	gz_stipple_sheet_free(&drawing->sheet);
 	gz_plane_free(&drawing->tone);
 	free(drawing->before);
@@ -299,5 +316,6 @@ void gz_illustrate_drawing_free(struct gz_illustrate_drawing *drawing)
 	free(drawing->paper);
 	free(drawing->grey_ids);
 	free(drawing->hatched_ids);
+	free(drawing->stippled_ids);
 	*drawing = (struct gz_illustrate_drawing) { 0 };
 }

@@ -15,9 +15,9 @@
 #include "base/log.h"
 #include "base/result.h"
 #include "base/workers.h"
-#include "render/illustration/hatch_balance.h"
 #include "render/illustration/hatch_lines.h"
 #include "render/illustration/illustration_look.h"
+#include "render/illustration/mark_balance.h"
 #include "render/illustration/shared/illustrate_scene.h"
 #include "render/illustration/stipple_points.h"
 #include "render/picture/image.h"
@@ -34,7 +34,7 @@ struct gz_illustrate_drawing {
 	struct gz_stipple_scale scale; /**< without factors: 1 everywhere */
 	struct gz_stipple_discs discs;
 	struct gz_hatch_lines lines;
-	struct gz_hatch_balance balance; /**< of the lines of a layer */
+	struct gz_mark_balance balance; /**< of the lines of a layer */
 	struct gz_stipple_sheet sheet;
 	struct gz_plane tone; /**< of a layer of several */
 	float *before;        /**< brightness of the layers before it */
@@ -42,9 +42,9 @@ struct gz_illustrate_drawing {
 	float *layer_lines;   /**< those of a layer: struct gz_shading_frame.lines_apart */
 	float *paper;         /**< what grey objects leave of the paper's brightness */
 	size_t room;          /**< pixels of these four */
-	/** Of objects from 1 on: which are grey, and which are hatched. */
-	bool *grey_ids, *hatched_ids;
-	size_t ids_room;                         /**< of both */
+	/** Of objects from 1 on: which are grey, hatched and stippled. */
+	bool *grey_ids, *hatched_ids, *stippled_ids;
+	size_t ids_room;                         /**< of all three */
 	const struct gz_illustration_look *look; /**< of the picture, while it is made; borrowed */
 	bool begun;                              /**< there is a layer of several */
 	const float *shown_lines; /**< the lines of the picture: one of the two planes above */
