@@ -16,6 +16,7 @@
 
 #include "base/log.h"
 #include "base/option.h"
+#include "base/order.h"
 #include "bench/filter/gazecom.h"
 #include "bench/filter/labelled_recording.h"
 #include "bench/filter/precision.h"
@@ -180,6 +181,51 @@ static void print_shares(const struct set *set)
 	}
 }
 
+/* A few large steps make most of a sum of squares: the largest ones of so many. */
+enum { LARGE_OF = 1000 };
+
+/* The squares of the steps in fixations. @param[out] out_squares  room for all samples
+ * @return how many */
+static size_t collect_squares(const struct set *set, double *out_squares)
+{
+	size_t count = 0;
+	for (size_t t = 0; t < set->count; t++) {
+		const struct gz_gaze_track *track = &set->track[t];
+		for (size_t i = 1; i < track->count; i++) {
+			const bool rests = track->label[i] == GZ_EVENT_FIXATION &&
+					   track->label[i - 1] == GZ_EVENT_FIXATION;
+			if (rests && isfinite(track->raw[i].x) && isfinite(track->raw[i - 1].x))
+				out_squares[count++] =
+					pow(gz_display_angle_deg(&track->display, track->point[i],
+								 track->point[i - 1]),
+					    2);
+		}
+	}
+	return count;
+}
+
+static void print_largest(const struct set *set)
+{
+	size_t room = 0;
+	double all = 0, largest = 0;
+	for (size_t t = 0; t < set->count; t++)
+		room += set->track[t].count;
+	double *squares = malloc(room * sizeof *squares);
+	if (!squares)
+		exit(1);
+	const size_t count = collect_squares(set, squares), large = count / LARGE_OF;
+	qsort(squares, count, sizeof *squares, gz_compare_doubles);
+	for (size_t i = 0; i < count; i++) {
+		all += squares[i];
+		largest += i >= count - large ? squares[i] : 0;
+	}
+	if (large > 0)
+		printf("    the largest %zu of %zu steps, %.2f to %.2f deg: %.1f %% of ours²\n",
+		       large, count, sqrt(squares[count - large]), sqrt(squares[count - 1]),
+		       100 * largest / all);
+	free(squares);
+}
+
 /* ---- measuring ---- */
 
 static struct gz_precision precision_or_exit(const struct set *set, bool raw,
@@ -297,6 +343,7 @@ static void measure_set(struct set *set, const struct gz_pipeline_params *params
 		gz_gaze_track_run_pipeline(&set->track[i], params, false);
 	print_filter(set, "pipeline");
 	print_shares(set);
+	print_largest(set);
 	for (size_t i = 0; i < set->count; i++)
 		smooth_by_hindsight(&set->track[i]);
 	print_filter(set, "hindsight");
