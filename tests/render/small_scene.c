@@ -1,6 +1,7 @@
 #include "small_scene.h"
 
 #include "render/data/voxel_colour.h"
+#include "render/plan/method.h"
 
 struct gz_foveation small_scene_foveation(void)
 {
@@ -253,4 +254,28 @@ enum gz_result raycaster_with(const char *backend, const struct raycaster_params
 	if (strcmp(backend, "gl") == 0)
 		return gz_gl_raycaster_create(&params->backend, &params->hooks, log, out_raycaster);
 	return gz_raycaster_create(backend, &params->backend, log, out_raycaster);
+}
+
+void small_scene_sets_agree(struct small_scene *scene)
+{
+	const char *const *const sets = small_scene_simd_sets();
+	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+		struct gz_image first = { 0 };
+		scene->foveation.method = method;
+		for (size_t i = 0; sets[i]; i++) {
+			struct gz_raycaster *renderer = small_scene_renderer(scene, 2, sets[i]);
+			struct gz_image image = { 0 };
+			int x = 0, y = 0;
+			small_scene_render(renderer, scene, 317, 203, &image, NULL);
+			if (i == 0)
+				first = image;
+			else if (image_difference(&first, &image, &x, &y) > 1)
+				fail_msg("%s, %s: pixel %d %d differs", gz_method_names[method],
+					 sets[i], x, y);
+			if (i > 0)
+				gz_image_free(&image);
+			gz_raycaster_destroy(&renderer);
+		}
+		gz_image_free(&first);
+	}
 }

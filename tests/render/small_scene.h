@@ -57,6 +57,10 @@ void small_scene_render_plan(struct gz_raycaster *renderer, const struct small_s
 void small_scene_render(struct gz_raycaster *renderer, const struct small_scene *scene, int width,
 			int height, struct gz_image *image, struct gz_frame_stats *out_stats);
 
+/** Check that each of small_scene_simd_sets() draws the same picture of @p scene within one grey
+ *  level, by every method. Sets the scene's method. */
+void small_scene_sets_agree(struct small_scene *scene);
+
 /** Greatest difference of any channel of any pixel, 0 to 255, and where. */
 int image_difference(const struct gz_image *a, const struct gz_image *b, int *out_x, int *out_y);
 

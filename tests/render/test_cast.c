@@ -181,26 +181,7 @@ static void cast_by_every_instruction_set_agrees_within_one_grey_level(void **st
 {
 	(void)state;
 	struct small_scene scene = small_scene_waves(50, 41, 60, GZ_VOXEL_U8);
-	for (int method = 0; method < GZ_METHOD_COUNT; method++) {
-		struct gz_image first = { 0 };
-		scene.foveation.method = method;
-		const char *const *const sets = small_scene_simd_sets();
-		for (size_t i = 0; sets[i]; i++) {
-			struct gz_raycaster *renderer = small_scene_renderer(&scene, 2, sets[i]);
-			struct gz_image image = { 0 };
-			int x = 0, y = 0;
-			small_scene_render(renderer, &scene, 317, 203, &image, NULL);
-			if (i == 0)
-				first = image;
-			else if (image_difference(&first, &image, &x, &y) > 1)
-				fail_msg("%s, %s: pixel %d %d differs", gz_method_names[method],
-					 sets[i], x, y);
-			if (i > 0)
-				gz_image_free(&image);
-			gz_raycaster_destroy(&renderer);
-		}
-		gz_image_free(&first);
-	}
+	small_scene_sets_agree(&scene);
 	small_scene_free(&scene);
 }
 
