@@ -68,7 +68,8 @@ void gz_handed_sockets_take_over(struct gz_handed_sockets *out_sockets, const st
 			continue;
 		}
 		gz_warn(log,
-			"descriptor %d of the service manager is no listening local socket, or one "
+			"descriptor %d of the service manager is not a listening local socket, or "
+			"one "
 			"too many; it is closed",
 			fd);
 		close(fd);
@@ -96,7 +97,7 @@ void gz_handed_sockets_close(struct gz_handed_sockets *sockets, const struct gz_
 	for (size_t i = 0; i < sockets->count; i++) {
 		if (sockets->items[i].fd < 0)
 			continue;
-		gz_warn(log, "%s of the service manager is none of the daemon's sockets",
+		gz_warn(log, "%s of the service manager is not one of the daemon's sockets",
 			sockets->items[i].path);
 		close(sockets->items[i].fd);
 	}

@@ -269,7 +269,7 @@ bool gz_study_rows_parse(const struct gz_study *study, const struct gz_study_lay
 		const char *field = gz_csv_next_field(&line);
 		if (field && parse_number(field, column, row))
 			continue;
-		snprintf(what, what_size, "%s is '%s', which is no such number", column->name,
+		snprintf(what, what_size, "%s is '%s', which is not such a number", column->name,
 			 field ? field : "");
 		return false;
 	}

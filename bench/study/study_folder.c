@@ -342,7 +342,7 @@ enum gz_result gz_study_folder_check(const char *folder, const struct gz_log *lo
 {
 	if (access(folder, F_OK) != 0 || is_empty(folder) || has_study(folder, log))
 		return GZ_OK;
-	gz_err(log, "%s: exists and is no study; name a new folder", folder);
+	gz_err(log, "%s: exists and is not a study; name a new folder", folder);
 	return GZ_ERR_BUSY;
 }
 

@@ -214,7 +214,7 @@ static void read_text(struct reader *reader, const json_t *object, const char *k
 	const json_t *value = json_object_get(object, key);
 	if (!json_is_string(value) || json_string_length(value) >= size ||
 	    strlen(json_string_value(value)) != json_string_length(value)) {
-		refuse(reader, "%s is no text of less than %zu bytes", key, size);
+		refuse(reader, "%s is not a text of less than %zu bytes", key, size);
 		return;
 	}
 	memcpy(text, json_string_value(value), json_string_length(value) + 1);
@@ -226,7 +226,7 @@ static long long whole(struct reader *reader, const json_t *value, const char *k
 	if (json_is_integer(value) && json_integer_value(value) >= least &&
 	    json_integer_value(value) <= most)
 		return json_integer_value(value);
-	refuse(reader, "%s is no whole number from %lld to %lld", key, least, most);
+	refuse(reader, "%s is not a whole number from %lld to %lld", key, least, most);
 	return least;
 }
 
@@ -240,7 +240,7 @@ static double real(struct reader *reader, const json_t *value, const char *key)
 {
 	if (json_is_number(value))
 		return json_number_value(value);
-	refuse(reader, "%s is no number", key);
+	refuse(reader, "%s is not a number", key);
 	return 0;
 }
 
@@ -249,7 +249,7 @@ static void read_reals(struct reader *reader, const json_t *object, const char *
 {
 	const json_t *array = json_object_get(object, key);
 	if (json_array_size(array) != count)
-		refuse(reader, "%s is no list of %zu numbers", key, count);
+		refuse(reader, "%s is not a list of %zu numbers", key, count);
 	for (size_t i = 0; i < count; i++)
 		values[i] = real(reader, json_array_get(array, i), key);
 }
@@ -259,7 +259,7 @@ static void read_wholes(struct reader *reader, const json_t *object, const char 
 {
 	const json_t *array = json_object_get(object, key);
 	if (json_array_size(array) != count)
-		refuse(reader, "%s is no list of %zu numbers", key, count);
+		refuse(reader, "%s is not a list of %zu numbers", key, count);
 	for (size_t i = 0; i < count; i++)
 		values[i] = (int)whole(reader, json_array_get(array, i), key, 1, most);
 }
@@ -272,7 +272,7 @@ static void *read_list(struct reader *reader, const json_t *object, const char *
 	*out_count = 0;
 	const size_t count = json_array_size(*out_array);
 	if (count < 1 || count > most) {
-		refuse(reader, "%s is no list of 1 to %zu", key, most);
+		refuse(reader, "%s is not a list of 1 to %zu", key, most);
 		return NULL;
 	}
 	void *room = calloc(count, element_size);
@@ -329,13 +329,13 @@ static void read_scene(struct reader *reader, const json_t *json, struct gz_stud
 	scene->display.distance_mm =
 		real(reader, json_object_get(display, "distance_mm"), "distance_mm");
 	if (reader->result == GZ_OK && !gz_display_valid(&scene->display))
-		refuse(reader, "the display of %s is none that can be", scene->name);
+		refuse(reader, "the display of %s is impossible", scene->name);
 }
 
 static void read_point(struct reader *reader, const json_t *json, struct gz_study_point *point)
 {
 	if (json_array_size(json) != 3)
-		refuse(reader, "a point is no list of x, y and camera");
+		refuse(reader, "a point is not a list of x, y and camera");
 	point->gaze.x = (float)real(reader, json_array_get(json, 0), "a point's x");
 	point->gaze.y = (float)real(reader, json_array_get(json, 1), "a point's y");
 	point->camera =
@@ -372,7 +372,7 @@ static void read_sizes_and_backends(struct reader *reader, const json_t *json,
 	for (size_t i = 0; i < study->size_count; i++) {
 		const json_t *size = json_array_get(array, i);
 		if (json_array_size(size) != 2)
-			refuse(reader, "a size is no list of width and height");
+			refuse(reader, "a size is not a list of width and height");
 		for (size_t k = 0; k < 2; k++)
 			study->sizes[i][k] = (int)whole(reader, json_array_get(size, k), "a size",
 							1, GZ_IMAGE_SIDE_MAX);
@@ -382,7 +382,7 @@ static void read_sizes_and_backends(struct reader *reader, const json_t *json,
 	for (size_t i = 0; i < study->backend_count; i++) {
 		const json_t *item = json_array_get(array, i);
 		if (!json_is_string(item) || json_string_length(item) >= GZ_NAME_SIZE)
-			refuse(reader, "a backend is no name");
+			refuse(reader, "a backend is not a name");
 		else
 			snprintf(study->backends[i], GZ_NAME_SIZE, "%s", json_string_value(item));
 	}
@@ -490,7 +490,7 @@ static bool is_this_version(const json_t *json, const char *name, const struct g
 	const char *format = json_string_value(json_object_get(json, "format"));
 	const long long version = json_integer_value(json_object_get(json, "version"));
 	if (!format || strcmp(format, GZ_STUDY_FORMAT) != 0) {
-		gz_err(log, "%s: is no study of gazebench", name);
+		gz_err(log, "%s: is not a study of gazebench", name);
 		return false;
 	}
 	if (version != GZ_STUDY_VERSION)

@@ -383,7 +383,7 @@ static enum gz_result step_zlib(struct gz_byte_stream *stream, uint8_t *buffer, 
 	*got = (size_t)(z->next_out - buffer);
 	stream->input_at = stream->input_size - z->avail_in;
 	if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
-		return refuse_damaged(stream, z->msg ? z->msg : "no zlib or gzip data");
+		return refuse_damaged(stream, z->msg ? z->msg : "not zlib or gzip data");
 	stream->inside = status != Z_STREAM_END;
 	return GZ_OK;
 }
@@ -436,7 +436,7 @@ static enum gz_result step_bzip2(struct gz_byte_stream *stream, uint8_t *buffer,
 	if (status != BZ_OK && status != BZ_STREAM_END)
 		return refuse_damaged(stream, status == BZ_DATA_ERROR
 						      ? "wrong bzip2 data or checksum"
-						      : "no bzip2 data");
+						      : "not bzip2 data");
 	stream->inside = status != BZ_STREAM_END;
 	return GZ_OK;
 }

@@ -160,7 +160,7 @@ static enum gz_result check_voxels(const struct gz_volume_file *file,
 				   const struct gz_decode_header *header, struct gz_volume *volume)
 {
 	if (volume->colours && !colours_valid(volume)) {
-		gz_err(file->log, "%s: its decoder made colours that cannot be; it was not read",
+		gz_err(file->log, "%s: its decoder made impossible colours; it was not read",
 		       file->path);
 		return GZ_ERR_FORMAT;
 	}
@@ -168,7 +168,7 @@ static enum gz_result check_voxels(const struct gz_volume_file *file,
 		gz_volume_find_range(volume);
 		if (!take_time_points(file, header, volume)) {
 			gz_err(file->log,
-			       "%s: its decoder made a series of %d time points that cannot be; "
+			       "%s: its decoder made an impossible series of %d time points; "
 			       "it was not read",
 			       file->path, header->time_points);
 			return GZ_ERR_FORMAT;

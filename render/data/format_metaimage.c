@@ -46,7 +46,7 @@ static enum gz_result take_meta_dimension(struct metaimage *meta, char *value)
 		return refuse_meta(meta, "NDims", "must be a number from 1 to 10");
 	}
 	if (meta->dimension < 3)
-		return refuse_meta_unsupported(meta, "NDims", "less than 3: this is no volume");
+		return refuse_meta_unsupported(meta, "NDims", "less than 3: this is not a volume");
 	return GZ_OK;
 }
 

@@ -113,7 +113,8 @@ static enum gz_result take_nrrd_dimension(struct nrrd *nrrd, char *value)
 		return refuse_nrrd(nrrd, "dimension", "must be a number from 1 to 16");
 	}
 	if (nrrd->dimension < 3)
-		return refuse_nrrd_unsupported(nrrd, "dimension", "less than 3: this is no volume");
+		return refuse_nrrd_unsupported(nrrd, "dimension",
+					       "less than 3: this is not a volume");
 	return GZ_OK;
 }
 

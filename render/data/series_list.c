@@ -156,7 +156,8 @@ enum gz_result gz_series_list_read(const char *path, const struct gz_loading *lo
 	const struct gz_volume_file file = { .path = path, .loading = &listing, .log = log };
 	struct gz_volume none;
 	if (stat(path, &status) == 0 && !gz_dicom_is(path)) {
-		gz_err(log, "%s: no DICOM; only DICOM folders and files hold several series", path);
+		gz_err(log, "%s: not DICOM; only DICOM folders and files hold several series",
+		       path);
 		return GZ_ERR_UNSUPPORTED;
 	}
 	const enum gz_result result = gz_volume_decode(&file, "dicom-list", NULL, &none);

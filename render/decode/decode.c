@@ -56,7 +56,7 @@ static enum gz_result take_line(struct run *run)
 	struct gz_decode_message *message = &run->message;
 	if (message->detail < GZ_LOG_DEBUG || message->detail > GZ_LOG_ERROR ||
 	    !memchr(message->text, 0, sizeof message->text))
-		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a line that is none");
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a malformed line");
 	const enum gz_log_level level = (enum gz_log_level)message->detail;
 	if (run->lines++ >= GZ_DECODE_LINES_MAX)
 		return GZ_OK;
@@ -104,7 +104,7 @@ static enum gz_result take_header(struct run *run)
 {
 	const struct gz_decode_header *header = &run->message.header;
 	if (run->accepted || run->series > 0)
-		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a header that is none");
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a malformed header");
 	enum gz_result result = run->job->accept(run->job->user, header, &run->place);
 	if (result == GZ_OK)
 		result = size_voxel_memory(run);
@@ -177,7 +177,7 @@ static enum gz_result take_listed_series(struct run *run)
 			   clean_field(series->reason, sizeof series->reason);
 	if (!run->job->listener || run->accepted || !whole || series->slices < 0 ||
 	    run->series >= GZ_DECODE_SERIES_MAX)
-		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a series that is none");
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a malformed series");
 	run->series++;
 	run->moved_ns = gz_clock_now_ns();
 	const enum gz_result result = run->job->listener->series(run->job->listener->user, series);
@@ -200,7 +200,7 @@ static enum gz_result take_series_picture(struct run *run)
 {
 	const struct gz_decode_picture *picture = &run->message.picture;
 	if (picture->band >= GZ_DECODE_PICTURE_BANDS || !remark_allowed(run))
-		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a picture that is none");
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a malformed picture");
 	run->job->listener->picture(run->job->listener->user, (uint32_t)run->message.detail,
 				    picture);
 	return GZ_OK;
@@ -210,7 +210,7 @@ static enum gz_result take_refusal(struct run *run)
 {
 	char *why = run->message.text;
 	if (!clean_field(why, sizeof run->message.text) || !remark_allowed(run))
-		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a refusal that is none");
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent a malformed refusal");
 	run->job->listener->refused(run->job->listener->user, (uint32_t)run->message.detail, why);
 	return GZ_OK;
 }
@@ -245,7 +245,7 @@ static enum gz_result take_message(struct run *run)
 	case GZ_DECODE_LISTED:
 		return take_list_end(run);
 	default:
-		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent what is no message");
+		return refuse_decoder(run, GZ_ERR_PROTOCOL, "sent something that is not a message");
 	}
 }
 

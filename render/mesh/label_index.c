@@ -30,7 +30,7 @@ static bool is_label_number(double value)
 static enum gz_result refuse_value(const char *name, double value, const struct gz_log *log)
 {
 	gz_err(log,
-	       "%s is no volume of labels: it has the value %g; labels are whole numbers, 0 for "
+	       "%s is not a volume of labels: it has the value %g; labels are whole numbers, 0 for "
 	       "no label",
 	       name, value);
 	return GZ_ERR_FORMAT;
@@ -38,7 +38,7 @@ static enum gz_result refuse_value(const char *name, double value, const struct 
 
 static enum gz_result refuse_count(const char *name, const struct gz_log *log)
 {
-	gz_err(log, "%s has more than %d labels; if it is no segmentation, show it as a volume",
+	gz_err(log, "%s has more than %d labels; if it is not a segmentation, show it as a volume",
 	       name, GZ_LABELS_MAX);
 	return GZ_ERR_FULL;
 }
@@ -246,7 +246,7 @@ static enum gz_result check_label_volume(const struct gz_volume *volume, const c
 		return GZ_ERR_UNSUPPORTED;
 	}
 	if (volume->colours) {
-		gz_err(log, "%s is no volume of labels: its voxels have colours", name);
+		gz_err(log, "%s is not a volume of labels: its voxels have colours", name);
 		return GZ_ERR_FORMAT;
 	}
 	return GZ_OK;

@@ -132,7 +132,7 @@ static enum gz_result note_element(struct ply_reader *reader, const struct gz_pl
 	if ((vertices && reader->vertices) || (faces && reader->faces))
 		return refuse_head(reader, "an element is there twice");
 	if (faces && !reader->vertices)
-		return refuse_head(reader, "faces stand in front of the vertices");
+		return refuse_head(reader, "faces come before the vertices");
 	reader->vertices = vertices ? element : reader->vertices;
 	reader->faces = faces ? element : reader->faces;
 	return GZ_OK;

@@ -78,8 +78,8 @@ static enum gz_result add_line(struct gz_particle_reader *reader, char *line, ui
 	if (is_comment(line))
 		return GZ_OK;
 	if (!take_point(line, position))
-		return gz_particle_refuse(
-			reader, "line %" PRIu64 " is no point: x y z are expected", number);
+		return gz_particle_refuse(reader, "line %" PRIu64 " is not a point; write x y z",
+					  number);
 	return gz_particle_add(reader, position, 0);
 }
 

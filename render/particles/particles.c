@@ -69,7 +69,7 @@ enum gz_result gz_particles_load(const struct gz_particle_request *request,
 		return GZ_ERR_UNSUPPORTED;
 	}
 	if (named && named != format)
-		gz_info(request->log, "%s: named as %s, opened as %s, which its content is",
+		gz_info(request->log, "%s: named as %s; its content is %s, so it is opened as that",
 			request->path, named->name, format->name);
 	return format->load(request, out_particles);
 }

@@ -54,7 +54,7 @@ static enum gz_result find_data_file(const struct scene_loader *loader, const ch
 {
 	const enum gz_result result = find_named_file(loader, key, name, out_path);
 	if (result == GZ_ERR_NOT_FOUND && loader->settings->volume_source[0])
-		gz_err(loader->log, "%s: its data are to be had here: %s", loader->name,
+		gz_err(loader->log, "%s: get its data here: %s", loader->name,
 		       loader->settings->volume_source);
 	return result;
 }
@@ -224,7 +224,7 @@ static enum gz_result load_label_names(const struct scene_loader *loader,
 		return GZ_OK;
 	result = gz_label_names_read(beside, NULL, out_names);
 	gz_debug(loader->log, "%s: %zu names of labels%s", beside, out_names->count,
-		 result == GZ_OK ? "" : ": it is no file of names");
+		 result == GZ_OK ? "" : ": it is not a file of names");
 	return result == GZ_ERR_NO_MEM ? result : GZ_OK;
 }
 

@@ -120,7 +120,7 @@ class Run(unittest.TestCase):
         self.write("s/letter", "dear")
         done = self.gazebench(self.measure("s"))
         self.assertEqual(done.returncode, 1)
-        self.assertIn("is no study", done.stderr)
+        self.assertIn("is not a study", done.stderr)
         self.assertEqual(os.listdir(os.path.join(self.place.name, "s")), ["letter"])
 
     def test_full_disk_exits_with_3_and_goes_on_once_there_is_room(self):

@@ -375,10 +375,10 @@ static void damaged_json_is_refused(void **state)
 	} damages[] = {
 		{ "\"version\": 1", "\"version\": 2",
 		  "version 2 and this program reads version 1" },
-		{ "gazecast study", "gazecast scene", "is no study" },
-		{ "\"frames\": 2", "\"frames\": 0", "frames is no whole number from 1 to 1000" },
-		{ "\"frames\": 2", "\"frame\": 2", "frames is no whole number from 1 to 1000" },
-		{ "\"variants\": [", "\"variants\": [], \"other\": [", "variants is no list" },
+		{ "gazecast study", "gazecast scene", "is not a study" },
+		{ "\"frames\": 2", "\"frames\": 0", "frames is not a whole number from 1 to 1000" },
+		{ "\"frames\": 2", "\"frame\": 2", "frames is not a whole number from 1 to 1000" },
+		{ "\"variants\": [", "\"variants\": [], \"other\": [", "variants is not a list" },
 		{ "\"distance_mm\": 6", "\"distance_mm\": -6", "the display of head" },
 		{ "{", "{,", "study.json:1: " },
 	};
@@ -406,7 +406,7 @@ static void folder_of_something_else_is_refused(void **state)
 	assert_int_equal(mkdir(folder, 0777), 0);
 	write_text("letter.txt", "dear", 4);
 	assert_int_equal(gz_study_write(folder, &study, &log_of_test), GZ_ERR_BUSY);
-	assert_non_null(strstr(message, "is no study"));
+	assert_non_null(strstr(message, "is not a study"));
 	struct gz_study_writer *writer = NULL;
 	size_t done;
 	assert_int_equal(gz_study_writer_open(folder, &study, &log_of_test, &writer, &done),

@@ -185,10 +185,10 @@ static void decoder_that_floods_is_ended(void **state)
 static void messages_that_are_none_are_refused(void **state)
 {
 	(void)state;
-	check_decode_refused("unknown kind", GZ_ERR_PROTOCOL, "no message");
+	check_decode_refused("unknown kind", GZ_ERR_PROTOCOL, "not a message");
 	check_decode_refused("step nan", GZ_ERR_PROTOCOL, "step outside");
-	check_decode_refused("endless line", GZ_ERR_PROTOCOL, "line that is none");
-	check_decode_refused("two headers", GZ_ERR_PROTOCOL, "header that is none");
+	check_decode_refused("endless line", GZ_ERR_PROTOCOL, "malformed line");
+	check_decode_refused("two headers", GZ_ERR_PROTOCOL, "malformed header");
 	check_decode_refused("end larger", GZ_ERR_PROTOCOL, "another header");
 	check_decode_refused("end flat", GZ_ERR_PROTOCOL, "another header");
 }
@@ -256,9 +256,9 @@ static void texts_of_a_list_are_cleaned(void **state)
 static void list_that_nobody_asked_for_is_refused(void **state)
 {
 	(void)state;
-	check_decode_refused("list", GZ_ERR_PROTOCOL, "series that is none");
+	check_decode_refused("list", GZ_ERR_PROTOCOL, "malformed series");
 	check_decode_refused("empty list", GZ_ERR_PROTOCOL, "empty list");
-	check_decode_refused("picture before all", GZ_ERR_PROTOCOL, "picture that is none");
+	check_decode_refused("picture before all", GZ_ERR_PROTOCOL, "malformed picture");
 }
 
 static void decoder_that_fails_within_a_list_leaves_what_it_sent(void **state)
@@ -271,10 +271,10 @@ static void decoder_that_fails_within_a_list_leaves_what_it_sent(void **state)
 static void decoder_that_floods_a_list_is_ended(void **state)
 {
 	(void)state;
-	assert_int_equal(check_list_refused("flood series", GZ_ERR_PROTOCOL, "series that is none"),
+	assert_int_equal(check_list_refused("flood series", GZ_ERR_PROTOCOL, "malformed series"),
 			 GZ_DECODE_SERIES_MAX);
-	(void)check_list_refused("flood pictures", GZ_ERR_PROTOCOL, "picture that is none");
-	(void)check_list_refused("flood refusals", GZ_ERR_PROTOCOL, "refusal that is none");
+	(void)check_list_refused("flood pictures", GZ_ERR_PROTOCOL, "malformed picture");
+	(void)check_list_refused("flood refusals", GZ_ERR_PROTOCOL, "malformed refusal");
 }
 
 static void messages_of_a_list_that_are_none_are_refused(void **state)
@@ -284,14 +284,14 @@ static void messages_of_a_list_that_are_none_are_refused(void **state)
 		const char *deed, *words;
 	} faults[] = {
 		{ "empty list", "empty list" },
-		{ "endless series", "series that is none" },
-		{ "negative series", "series that is none" },
-		{ "picture of none", "picture that is none" },
-		{ "picture before all", "picture that is none" },
-		{ "band of none", "picture that is none" },
-		{ "endless refusal", "refusal that is none" },
-		{ "series with voxels", "series that is none" },
-		{ "voxels with series", "header that is none" },
+		{ "endless series", "malformed series" },
+		{ "negative series", "malformed series" },
+		{ "picture of none", "malformed picture" },
+		{ "picture before all", "malformed picture" },
+		{ "band of none", "malformed picture" },
+		{ "endless refusal", "malformed refusal" },
+		{ "series with voxels", "malformed series" },
+		{ "voxels with series", "malformed header" },
 	};
 	for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++)
 		(void)check_list_refused(faults[i].deed, GZ_ERR_PROTOCOL, faults[i].words);

@@ -169,7 +169,7 @@ static void faulty_files_are_refused_with_one_line(void **state)
 		unsigned char add;
 		int longer; /* bytes that are added or taken away */
 	} faults[] = {
-		{ "no such file", 2, 1, 0 },
+		{ "not such a file", 2, 1, 0 },
 		{ "another version", 8, 1, 0 },
 		{ "another version", 12, 1, 0 },
 		{ "its length is not", 16, 1, 0 },

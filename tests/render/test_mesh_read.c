@@ -222,7 +222,7 @@ static void each_fault_is_refused_with_its_place(void **state)
 		{ HEAD "element vertex -1\n", "a.ply:3: a PLY element without" },
 		{ HEAD "element vertex 99999999999999999999\n", "a.ply:3: a PLY element without" },
 		{ HEAD "property float x\n", "a.ply:3: a PLY property in front" },
-		{ HEAD "element face 1\n" FACE "end_header\n", "a.ply:5: faces stand in front" },
+		{ HEAD "element face 1\n" FACE "end_header\n", "a.ply:5: faces come before" },
 		{ HEAD "element vertex 1\n" VERTEX "element vertex 1\n" VERTEX "end_header\n",
 		  "an element is there twice" },
 		{ HEAD "element vertex 1\nproperty half x\n", "a.ply:4: a PLY property without" },

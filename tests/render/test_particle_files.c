@@ -423,7 +423,7 @@ static void damaged_files_are_refused(void **state)
 	struct made_file file = { .size = 0 };
 	(void)state;
 	check_refused(write_line("a.xyz", "1 2 3\n4 five 6\n"), GZ_ERR_FORMAT,
-		      "line 2 is no point");
+		      "line 2 is not a point");
 	check_refused(write_line("a.xyz", ""), GZ_ERR_FORMAT, "has no particles");
 	check_refused(write_line("a.ply", "ply\nformat ascii 1.0\nelement face 0\nend_header\n"),
 		      GZ_ERR_FORMAT, "without the element vertex");

@@ -379,7 +379,7 @@ static void scene_without_its_data_says_where_they_are_to_be_had(void **state)
 	const char *path = files_write_text("sourced.scene", text, NULL, 0);
 	assert_int_equal(gz_scene_load(path, NULL, &log.log, &scene), GZ_ERR_NOT_FOUND);
 	assert_int_equal(log.messages, 2);
-	assert_non_null(strstr(log.last, "to be had here: https://data.example/v.nrrd"));
+	assert_non_null(strstr(log.last, "get its data here: https://data.example/v.nrrd"));
 }
 
 static void file_is_searched_beside_the_scene_then_under_the_data_folder(void **state)

@@ -266,7 +266,7 @@ class SeveralSeries(unittest.TestCase):
         with open(text, "w", encoding="utf-8") as file:
             file.write("no volume\n")
         os.mkdir(self.path("empty"))
-        self.refused("no DICOM", "--list-series", text)
+        self.refused("not DICOM", "--list-series", text)
         self.refused("no DICOM image", "--list-series", self.path("empty"))
         self.refused("cannot open it", "--list-series", self.path("nowhere"))
         self.refused("no scene", "--list-series")

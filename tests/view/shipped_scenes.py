@@ -77,7 +77,7 @@ class ShippedScenes(unittest.TestCase):
                     self.check_shown(scene, done)
                 else:
                     self.assertEqual(done.returncode, 1)
-                    self.assertRegex(done.stderr, "its data are to be had here: .*package [a-z]+")
+                    self.assertRegex(done.stderr, "get its data here: .*package [a-z]+")
         self.assertEqual(techniques, {"raycast", "slices", "isosurface", "illustrate"})
 
     def test_fetched_scenes_say_where_their_data_are(self):
@@ -85,7 +85,7 @@ class ShippedScenes(unittest.TestCase):
             with self.subTest(scene=os.path.basename(scene)):
                 done = self.open(scene, None)
                 self.assertEqual(done.returncode, 1)
-                self.assertRegex(done.stderr, "its data are to be had here: .*https://")
+                self.assertRegex(done.stderr, "get its data here: .*https://")
 
     @unittest.skipUnless(DATA, "GAZECAST_DATA is not set")
     def test_fetched_scenes_open_with_their_data(self):

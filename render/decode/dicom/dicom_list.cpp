@@ -100,7 +100,7 @@ std::string fault_of_uid(const std::string &uid)
 	const bool sound = uid.size() <= uid_max && std::all_of(uid.begin(), uid.end(), [](char c) {
 				   return std::isgraph((unsigned char)c);
 			   });
-	return sound ? "" : "has a series UID that is none; open one of its files";
+	return sound ? "" : "has a malformed series UID; open one of its files";
 }
 
 /* A series of the list. */

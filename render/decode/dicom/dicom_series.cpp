@@ -208,7 +208,7 @@ gz_result reader::place()
 	const slice &first = slices[0];
 	const vector3 normal = cross(first.row, first.column);
 	if (std::fabs(dot(normal, normal) - 1) > 0.02) {
-		gz_err(log, "%s: the directions of its rows and columns are no right angle",
+		gz_err(log, "%s: the directions of its rows and columns do not form a right angle",
 		       first.path().c_str());
 		return GZ_ERR_FORMAT;
 	}

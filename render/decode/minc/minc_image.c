@@ -334,7 +334,7 @@ static enum gz_result take_valid_range(struct gz_minc_image *image)
 	if (isfinite(range[0]) && isfinite(range[1]) && image->valid[0] < image->valid[1] &&
 	    image->within[0] <= image->within[1])
 		return GZ_OK;
-	gz_err(image->file->log, "%s: its valid range, %g to %g, is none; correct it",
+	gz_err(image->file->log, "%s: its valid range, %g to %g, is not a range; correct it",
 	       image->file->path, range[0], range[1]);
 	return GZ_ERR_FORMAT;
 }

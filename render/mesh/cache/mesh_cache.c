@@ -98,7 +98,7 @@ static const char *fault_of_head(const unsigned char *head, size_t size, size_t 
 	if (size < HEAD_SIZE)
 		return "it is cut short";
 	if (memcmp(head + AT_MAGIC, cache_magic, sizeof cache_magic) != 0)
-		return "it is no such file";
+		return "it is not such a file";
 	if (load_word(head + AT_VERSION) != LAYOUT_VERSION || load_word(head + AT_RESERVED) != 0)
 		return "another version of Gazecast made it";
 	if (memcmp(head + AT_KEY, key->bytes, GZ_MESH_KEY_SIZE) != 0)
@@ -250,7 +250,7 @@ static enum gz_result load_open_file(const char *path, int fd, const struct cach
 {
 	struct stat status;
 	if (fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
-		gz_warn(wish->log, "%s: not used, because it is no regular file", path);
+		gz_warn(wish->log, "%s: not used, because it is not a regular file", path);
 		return GZ_ERR_IO;
 	}
 	const size_t floats = floats_wanted(wish, (uint64_t)status.st_size);
