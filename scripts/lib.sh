@@ -131,10 +131,12 @@ install_packages() {
 		sudo -v || die "packages are missing (${missing[*]}); run this again as root"
 	fi
 	as_root+=(env DEBIAN_FRONTEND=noninteractive)
+	# A new Ubuntu installs updates by itself for some minutes, and holds the lock meanwhile.
+	local apt=(apt-get -o DPkg::Lock::Timeout=600)
 	say "packages: installing ${#missing[@]} of $list: ${missing[*]}"
-	run_step apt-update "${as_root[@]}" apt-get update ||
+	run_step apt-update "${as_root[@]}" "${apt[@]}" update ||
 		die "apt-get update failed; check the network and /etc/apt/sources.list"
-	run_step apt-install "${as_root[@]}" apt-get install -y --no-install-recommends \
+	run_step apt-install "${as_root[@]}" "${apt[@]}" install -y --no-install-recommends \
 		"${missing[@]}" ||
 		die "apt-get install failed; see $logs/apt-install.log"
 }
