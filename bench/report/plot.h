@@ -21,7 +21,7 @@ struct gz_plot_axis {
 	bool from_zero;     /**< linear: begins at 0 whatever the values */
 	double name_room;   /**< logarithmic: room behind the last value for names, of the span */
 	bool falls;         /**< the greatest value is at the origin */
-	double first, last; /**< ends; set by gz_plot_fit() */
+	double first, last; /**< ends; set when the plot is drawn */
 };
 
 /** A point of a curve. */

@@ -160,7 +160,7 @@ struct gz_study {
 	struct gz_study_machine machine;
 	/** This study holds the units u with u % shard_count == shard. A unit is one scene, size,
 	 *  backend and point with all frames of all variants, which are measured in turn, so that
-	 *  their ratios are of one run: gz_study_unit(). */
+	 *  their ratios are of one run: gz_study_unit_row(). */
 	int shard, shard_count;
 	bool complete; /**< every row of the shard is there */
 

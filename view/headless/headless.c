@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "base/file.h"
 #include "render/data/format.h"
 #include "render/data/time_steps.h"
 #include "render/plan/method.h"
@@ -545,17 +544,13 @@ enum gz_result gz_view_headless(const struct gz_view_options *options, const str
 	return r;
 }
 
-typedef enum gz_result write_function(const struct gz_volume *volume, const char *path,
-				      const struct gz_loading *loading, const struct gz_log *log);
-
 static gz_volume_writer *writer_of(const char *path, const struct gz_log *log)
 {
-	if (gz_path_ends(path, ".gzb"))
-		return gz_bricks_write;
-	if (gz_path_ends(path, ".nrrd"))
-		return gz_nrrd_write;
-	gz_err(log, "--write-volume %s: unknown ending; use .gzb for bricks or .nrrd", path);
-	return NULL;
+	gz_volume_writer *writer = gz_volume_writer_by_name(path);
+	if (!writer)
+		gz_err(log, "--write-volume %s: unknown ending; use .gzb for bricks or .nrrd",
+		       path);
+	return writer;
 }
 
 static enum gz_result apply_options(void *user, struct gz_scene_settings *settings)
