@@ -347,6 +347,18 @@ static void describe_limits(const struct gz_option *option, char *text, size_t s
 		snprintf(text, size, " (default %s)", option->preset);
 }
 
+/* As describe_limits(), but a switch tells how it is set: alone, or after '='. */
+static void describe_use(const struct gz_option *option, char *text, size_t size)
+{
+	const char *preset = option->preset ? option->preset : "";
+	if (option->type != GZ_OPTION_BOOL)
+		describe_limits(option, text, size);
+	else if (strcmp(preset, "true") == 0 || strcmp(preset, "yes") == 0)
+		snprintf(text, size, " (default yes; --%s=no switches it off)", option->key);
+	else
+		text[0] = '\0';
+}
+
 void gz_options_print_help(const struct gz_option_binding *bindings, size_t count, FILE *out)
 {
 	int width = widest_entry(bindings, count);
@@ -356,7 +368,7 @@ void gz_options_print_help(const struct gz_option_binding *bindings, size_t coun
 			char entry[GZ_OPTION_MESSAGE_SIZE];
 			char limits[2 * GZ_OPTION_MESSAGE_SIZE];
 			describe_entry(option, entry, sizeof entry);
-			describe_limits(option, limits, sizeof limits);
+			describe_use(option, limits, sizeof limits);
 			int pad = width - utf8_columns(entry);
 			fprintf(out, "  %s%*s  %s%s\n", entry, pad > 0 ? pad : 0, "", option->help,
 				limits);

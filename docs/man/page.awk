@@ -50,8 +50,10 @@ function put_option(line, which,    gap, left, help, key, value, section) {
 	}
 	if (!open)
 		begin_list()
-	if (which == "dotted")
+	if (which == "dotted") { # a key of a file, whose value stands behind "="
 		sub(/^[^.]*\./, "", key)
+		sub(/; --[^ ]*=no switches it off\)/, ")", help)
+	}
 	print heading(key, value, which == "dotted")
 	print escaped(toupper(substr(help, 1, 1)) substr(help, 2)) "."
 	seen++

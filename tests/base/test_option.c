@@ -253,6 +253,24 @@ static char *printed(void print(const struct gz_option_binding *, size_t, FILE *
 	return text;
 }
 
+static void help_tells_how_to_switch_off(void **state)
+{
+	(void)state;
+	static const struct gz_option options[] = {
+		{ "menu", GZ_OPTION_BOOL, 0, .preset = "yes", .help = "show a menu" },
+		{ "vsync", GZ_OPTION_BOOL, 0, .preset = "true", .help = "wait" },
+		{ "cross", GZ_OPTION_BOOL, 0, .preset = "no", .help = "draw a cross" },
+	};
+	bool target = false;
+	const struct gz_option_binding binding = { options, 3, &target, NULL };
+	char *help = printed(gz_options_print_help, &binding);
+	assert_string_equal(help,
+			    "  --menu   show a menu (default yes; --menu=no switches it off)\n"
+			    "  --vsync  wait (default yes; --vsync=no switches it off)\n"
+			    "  --cross  draw a cross\n");
+	free(help);
+}
+
 static void help_has_one_aligned_line_per_option(void **state)
 {
 	(void)state;
@@ -422,6 +440,7 @@ TEST_SUITE(option)
 		cmocka_unit_test(every_preset_holds),
 		cmocka_unit_test(value_that_no_text_could_set_does_not_hold),
 		cmocka_unit_test(settings_are_the_same_until_any_option_changes),
+		cmocka_unit_test(help_tells_how_to_switch_off),
 		cmocka_unit_test(help_has_one_aligned_line_per_option),
 		cmocka_unit_test(printed_file_reads_back_to_the_same_settings),
 		cmocka_unit_test(printed_file_never_holds_a_value_that_would_read_back_otherwise),
