@@ -175,7 +175,7 @@ void gz_config_describe_pipeline(const struct gz_pipeline_params *params,
  * The directory for recordings: the configured one, else $XDG_DATA_HOME/gazecast, else
  * ~/.local/share/gazecast. The latter two are made if missing.
  *
- * @param[out] text  the path, @p size bytes
+ * @param[out] text  the whole path, @p size bytes
  * @retval GZ_ERR_NOT_FOUND  the directory does not exist or cannot be made; logged
  */
 enum gz_result gz_config_recording_directory(const struct gz_config *config,

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/text.h"
 #include "daemon/config.h"
 #include "protocol/correction_file.h"
 #include "protocol/validated_file.h"
@@ -242,12 +243,16 @@ enum gz_result gz_config_recording_directory(const struct gz_config *config,
 					     const struct gz_log *log, char *text, size_t size)
 {
 	if (config->recording_directory[0]) {
-		snprintf(text, size, "%s", config->recording_directory);
-		if (is_recording_directory(text))
+		/* The whole path: clients that are told it run in other folders. */
+		char *whole = realpath(config->recording_directory, NULL);
+		const bool good = whole && is_recording_directory(whole) &&
+				  gz_text_print(text, size, "%s", whole) == GZ_OK;
+		free(whole);
+		if (good)
 			return GZ_OK;
 		gz_err(log,
 		       "recording.directory: %s is not a directory; create it, or name another",
-		       text);
+		       config->recording_directory);
 		return GZ_ERR_NOT_FOUND;
 	}
 	if (user_data_directory(text, size) && make_private_directories(text) &&

@@ -190,7 +190,7 @@ static void start_recording(struct gz_requests *requests, const char *name)
 		return;
 	}
 	if (status.state == GZ_RECORDING_ON) {
-		reply(requests, "a recording is running; end it with r first");
+		reply(requests, "a recording is running; end it first (gazectl stop, or r)");
 		return;
 	}
 	if (gz_config_recording_directory(requests->parts.config, requests->parts.log, directory,

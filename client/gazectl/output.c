@@ -28,7 +28,8 @@ enum gz_result gz_output_begin(struct gz_output_file *file, const char *path, bo
 	snprintf(file->partial, sizeof file->partial, "%s.part", path);
 	file->fd = open(file->partial, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 	if (file->fd < 0) {
-		gz_err(log, "cannot write %s: %s", file->partial, strerror(errno));
+		gz_err(log, "cannot write %s: %s; choose a folder that you may write to", path,
+		       strerror(errno));
 		return GZ_ERR_IO;
 	}
 	file->open = true;

@@ -317,6 +317,10 @@ static void what_cannot_be_converted_is_refused_and_leaves_nothing(void **state)
 	program = GAZECTL_RUN("convert", in_directory("nowhere.asc"), to);
 	assert_int_equal(program.status, 1);
 	assert_non_null(strstr(program.err_text, "not found"));
+	program = GAZECTL_RUN("convert", from, in_directory("nowhere/b.csv"));
+	assert_int_equal(program.status, 1);
+	assert_non_null(
+		strstr(program.err_text, "nowhere/b.csv: No such file or directory; choose"));
 	const char *empty = in_directory("empty.asc");
 	fclose(fopen(empty, "wb"));
 	program = GAZECTL_RUN("convert", empty, to);

@@ -387,6 +387,12 @@ static void config_recording_directory_is_made_in_the_users_data(void **state)
 	assert_int_equal(rmdir(expected), 0);
 	assert_int_equal(rmdir(data), 0);
 	assert_int_equal(rmdir(home), 0);
+	/* gazectl, in another folder, prints the whole path. */
+	char here[GZ_PATH_SIZE];
+	assert_non_null(getcwd(here, sizeof here));
+	assert_int_equal(READ("--config", "/dev/null", "--recording.directory", "."), GZ_OK);
+	assert_int_equal(gz_config_recording_directory(&config, NULL, text, sizeof text), GZ_OK);
+	assert_string_equal(text, here);
 	assert_int_equal(READ("--config", "/dev/null", "--recording.directory", "/nonexistent"),
 			 GZ_OK);
 	assert_int_equal(gz_config_recording_directory(&config, &captured.log, text, sizeof text),

@@ -105,7 +105,7 @@ static void gazed_answers_every_letter_within_100_ms(void **state)
 		  "this is not a valid name for a recording; allowed: 1 to 64 of A-Z a-z 0-9 . _ "
 		  "-" },
 		{ "R one", "OK" },
-		{ "R two", "a recording is running; end it with r first" },
+		{ "R two", "a recording is running; end it first (gazectl stop, or r)" },
 		{ "r", "OK" },
 		{ "R", "OK" },
 		{ "r", "OK" },
