@@ -363,10 +363,17 @@ class Validate(unittest.TestCase):
         self.assertEqual(len(self.stored()), 1)
 
     def test_space_begins_and_escape_cancels(self):
+        self.begin_and_cancel("key", "space")
+
+    def test_click_begins(self):
+        self.begin_and_cancel("click", "1")
+
+    def begin_and_cancel(self, *words):
         self.start_simulator()
         gazectl = self.start_validate()
         self.until(lambda: len(set(self.grab())) > 2, "instructions")
-        self.key("space")
+        run("xdotool", "windowfocus", self.window, env=self.environment)
+        self.assertEqual(run("xdotool", *words, env=self.environment).returncode, 0)
         # A target's dot in the middle of one of the five places.
         places = [(x, y) for x in (0.1, 0.5, 0.9) for y in (0.1, 0.5, 0.9)]
 

@@ -21,9 +21,10 @@ const struct gz_option gz_target_option_table[] = {
 	{ "seed", GZ_OPTION_INT, AT(seed), 0, 2147483647, .preset = "0",
 	  .help = "random seed of the order; 0: a new order each time" },
 	{ "advance", GZ_OPTION_CHOICE, AT(advance), .choices = advance_names, .preset = "auto",
-	  .help = "go to the next target automatically, or when Space is pressed" },
+	  .help = "go to the next target automatically, or when Space or a button of the mouse is "
+		  "pressed" },
 	{ "instructions", GZ_OPTION_BOOL, AT(instructions), .preset = "true",
-	  .help = "show instructions first and wait for Space" },
+	  .help = "show instructions first and wait for Space or a click" },
 	{ "window", GZ_OPTION_BOOL, AT(windowed), .preset = "false",
 	  .help = "show targets or an experiment in a window instead of full screen" },
 };

@@ -133,6 +133,7 @@ void make_interface(float scale)
 	add_font(file, roundf(FONT_PX * scale));
 	add_font(file, roundf(LARGE * FONT_PX * scale));
 	ImGui::GetStyle() = ImGuiStyle();
+	ImGui::GetStyle().Colors[ImGuiCol_PopupBg].w = 1; /* no text shines through menus */
 	ImGui::GetStyle().ScaleAllSizes(scale);
 	memory().scale = scale;
 }

@@ -56,7 +56,7 @@ struct target_window {
 	int64_t shown_ns;          /* time the target appeared; 0: not yet */
 	struct target_frame frame; /* the last one drawn */
 	bool damaged;              /* it has to be drawn again */
-	bool space;                /* Space was pressed since the last frame */
+	bool space;                /* Space or a button was pressed since the last frame */
 	bool cancelled;
 };
 
@@ -64,13 +64,13 @@ static const char *instructions_of(const struct gz_target_options *options)
 {
 	if (options->advance == GZ_TARGET_ADVANCE_SPACE)
 		return "Look at the centre of each target.\n"
-		       "Press Space while you look at it to go to the next.\n"
+		       "Press Space, or click, while you look at it to go to the next.\n"
 		       "Keep your head still.\n\n"
-		       "Press Space to start, Escape to leave.";
+		       "Press Space or click to start, Escape to leave.";
 	return "Look at the centre of each target until the next one appears.\n"
 	       "Keep your head still. The best time to blink\n"
 	       "is when a target has just appeared.\n\n"
-	       "Press Space to start, Escape to leave.";
+	       "Press Space or click to start, Escape to leave.";
 }
 
 static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, int mods)
@@ -83,6 +83,15 @@ static void on_target_key(GLFWwindow *glfw, int key, int scancode, int action, i
 	if (key == GLFW_KEY_ESCAPE)
 		window->cancelled = true;
 	if (key == GLFW_KEY_SPACE)
+		window->space = true;
+}
+
+static void on_target_button(GLFWwindow *glfw, int button, int action, int mods)
+{
+	(void)button;
+	(void)mods;
+	struct target_window *window = glfwGetWindowUserPointer(glfw);
+	if (action == GLFW_PRESS)
 		window->space = true;
 }
 
@@ -143,6 +152,7 @@ static enum gz_result open_target_drawing(struct target_window *window)
 	glGenVertexArrays(1, &window->vertices);
 	glfwSetWindowUserPointer(window->glfw, window);
 	glfwSetKeyCallback(window->glfw, on_target_key);
+	glfwSetMouseButtonCallback(window->glfw, on_target_button);
 	glfwSetWindowRefreshCallback(window->glfw, on_target_damage);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
 	window->has_widgets = gz_widgets_init(window->glfw, window->options->interface_scale);
