@@ -522,7 +522,8 @@ static void draw_clip_line(const struct gz_window *window, enum gz_section_plane
 		return;
 	const struct gz_place from = window_place(frame, axes, ends[0]);
 	const struct gz_place to = window_place(frame, axes, ends[1]);
-	gz_draw_line(GZ_LAYER_PICTURE, from, to, clip_paint, 1);
+	/* Wider than the crosshair, which may lie on it. */
+	gz_draw_line(GZ_LAYER_PICTURE, from, to, clip_paint, 2);
 	draw_clip_side(window, plane, from, to);
 }
 
