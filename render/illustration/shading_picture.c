@@ -283,6 +283,18 @@ static struct gz_blurred_cells blurred_cells(const struct picture_job *job, enum
 					   job->picture->blurred[use] };
 }
 
+struct gz_shading_weights gz_shading_weights_of(const struct gz_shading_settings *settings)
+{
+	return (struct gz_shading_weights) {
+		.scene = 1,
+		.edge_light = (float)settings->edge_light,
+		.overlap_shadow = (float)settings->overlap_shadow,
+		.haze = (float)settings->haze,
+		.lines = (float)settings->lines,
+		.background = (float)settings->haze_background,
+	};
+}
+
 static void begin_frame(struct picture_job *job, const struct gz_shading_settings *settings)
 {
 	struct gz_shading_picture *picture = job->picture;
@@ -301,14 +313,7 @@ static void begin_frame(struct picture_job *job, const struct gz_shading_setting
 		.map = picture->map,
 		.filled = picture->filled,
 		.tile_columns = gz_shading_tiles(job->frame->width, GZ_SHADING_TILE_COLUMNS),
-		.weights = {
-			.scene = 1, /* its weights are in the plane */
-			.edge_light = (float)settings->edge_light,
-			.overlap_shadow = (float)settings->overlap_shadow,
-			.haze = (float)settings->haze,
-			.lines = (float)settings->lines,
-			.background = (float)settings->haze_background,
-		},
+		.weights = gz_shading_weights_of(settings),
 	};
 }
 

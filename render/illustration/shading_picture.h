@@ -37,6 +37,10 @@ struct gz_shading_frame {
 	bool keeps_curve; /**< keep the tone curve of the frame before: of a layer behind that */
 };
 
+/** The weights of settings. That of scene information is 1: its parameters have their weights in
+ * the plane that they make together. */
+struct gz_shading_weights gz_shading_weights_of(const struct gz_shading_settings *settings);
+
 /** Room for the planes in between; keep it from frame to frame. */
 struct gz_shading_picture;
 

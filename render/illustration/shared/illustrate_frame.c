@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/vector.h"
+#include "render/illustration/shading_picture.h"
 
 /* Towards the lamp of plain light. Chosen: the way that photographs are lit. */
 static const double plain_lamp[3] = { -0.5, 0.5, 1 };
@@ -75,18 +76,6 @@ static struct gz_illustrate_look look_of(const struct gz_shading_settings *setti
 	return look;
 }
 
-static struct gz_shading_weights weights_of(const struct gz_shading_settings *settings)
-{
-	return (struct gz_shading_weights) {
-		.scene = 1, /* its weights are in the plane */
-		.edge_light = (float)settings->edge_light,
-		.overlap_shadow = (float)settings->overlap_shadow,
-		.haze = (float)settings->haze,
-		.lines = (float)settings->lines,
-		.background = (float)settings->haze_background,
-	};
-}
-
 /* Room for at least @p count elements of @p size bytes. */
 static enum gz_result make_room(void **room, size_t *have, size_t count, size_t size)
 {
@@ -128,7 +117,7 @@ static enum gz_result fill_illustrate_looks(const struct gz_illustrate_scene *sc
 		struct gz_shading_settings settings;
 		gz_illustration_look_resolve(look, scene->templates[k].said, &settings);
 		frame->looks[k] = look_of(&settings, camera);
-		const struct gz_shading_weights weights = weights_of(&settings);
+		const struct gz_shading_weights weights = gz_shading_weights_of(&settings);
 		for (size_t i = 0; i < scene->id_count; i++)
 			if (scene->looks[i] == k)
 				frame->weights[i] = weights;
