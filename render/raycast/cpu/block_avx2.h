@@ -263,26 +263,4 @@ SIMD vf block_mix_floats(const struct block_voxels *block, const vf whole[3], co
 	return vf_set(0);
 }
 
-/* Two neighbours along x for each lane, as words. Single loads are faster than gathers. */
-SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t from,
-			const int32_t index[SIMD_LANES])
-{
-	if (type == GZ_VOXEL_U8) {
-		const uint8_t *base = (const uint8_t *)voxels + from;
-		uint16_t pair[SIMD_LANES];
-		for (int lane = 0; lane < SIMD_LANES; lane++)
-			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
-		return _mm256_cvtepu8_epi16(_mm_setr_epi16(
-			(int16_t)pair[0], (int16_t)pair[1], (int16_t)pair[2], (int16_t)pair[3],
-			(int16_t)pair[4], (int16_t)pair[5], (int16_t)pair[6], (int16_t)pair[7]));
-	}
-	const uint16_t *base = (const uint16_t *)voxels + from;
-	int32_t pair[SIMD_LANES];
-	for (int lane = 0; lane < SIMD_LANES; lane++)
-		memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
-	return vi_xor(_mm256_setr_epi32(pair[0], pair[1], pair[2], pair[3], pair[4], pair[5],
-					pair[6], pair[7]),
-		      vi_set((int32_t)0x80008000));
-}
-
 #endif

@@ -273,43 +273,4 @@ SIMD vf block_mix_floats(const struct block_voxels *block, const vf whole[3], co
 	return mix(mix(rows[0], rows[1], share[1]), mix(rows[2], rows[3], share[1]), share[2]);
 }
 
-/* 16 bits for each lane, from base + index bytes. Single loads take half the time of a gather. */
-SIMD __m256i load_halves(const uint8_t *base, const int32_t index[SIMD_LANES])
-{
-	__m128i half[2];
-	for (int i = 0; i < 2; i++, index += SIMD_LANES / 2) {
-		uint16_t pair[SIMD_LANES / 2];
-		for (int lane = 0; lane < SIMD_LANES / 2; lane++)
-			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
-		half[i] = _mm_setr_epi16((int16_t)pair[0], (int16_t)pair[1], (int16_t)pair[2],
-					 (int16_t)pair[3], (int16_t)pair[4], (int16_t)pair[5],
-					 (int16_t)pair[6], (int16_t)pair[7]);
-	}
-	return _mm256_set_m128i(half[1], half[0]);
-}
-
-/* 32 bits for each lane, from base + 2 * index bytes. */
-SIMD vi load_words(const uint16_t *base, const int32_t index[SIMD_LANES])
-{
-	__m128i quarter[4];
-	for (int i = 0; i < 4; i++, index += SIMD_LANES / 4) {
-		int32_t pair[SIMD_LANES / 4];
-		for (int lane = 0; lane < SIMD_LANES / 4; lane++)
-			memcpy(&pair[lane], base + index[lane], sizeof pair[lane]);
-		quarter[i] = _mm_setr_epi32(pair[0], pair[1], pair[2], pair[3]);
-	}
-	return _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_set_m128i(quarter[1], quarter[0])),
-				  _mm256_set_m128i(quarter[3], quarter[2]), 1);
-}
-
-/* Two neighbours along x for each lane, as words. */
-SIMD vi load_word_pairs(enum gz_voxel_type type, const void *voxels, int64_t from,
-			const int32_t index[SIMD_LANES])
-{
-	if (type == GZ_VOXEL_U8)
-		return _mm512_cvtepu8_epi16(load_halves((const uint8_t *)voxels + from, index));
-	return _mm512_xor_si512(load_words((const uint16_t *)voxels + from, index),
-				vi_set((int32_t)0x80008000));
-}
-
 #endif

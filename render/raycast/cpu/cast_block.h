@@ -13,7 +13,6 @@
  * - block_pairs(): each lane's neighbours along x as signed words, of 16-bit values less 32768, in
  *   the order (y, z) = 00, 10, 01, 11, for places of whole voxels in the block;
  * - block_mix_floats(): the values between floats;
- * - load_word_pairs(): what block_pairs() gives for one row, from single loads;
  * - TOGETHER_SPREAD: how far apart rays may be.
  *
  * Along x, neighbours are weighted in whole numbers of 1/32767, where one multiplication serves
@@ -114,50 +113,6 @@ SIMD int block_places(const struct gz_cast *cast, const struct block *block, int
 	return block_holds(places, wide, mask);
 }
 
-/* Weights of two words: the share of the upper voxel in the high half, the rest in the low half. */
-SIMD vi word_weights(vf share)
-{
-	const vi high = vi_round(share * vf_set(32767));
-	return vi_xor(vi_or(vi_shift_left(high, 16), high), vi_set(0x7FFF));
-}
-
-SIMD vf mix_words(vi words, vi weights)
-{
-	return vf_from_i(vi_sum_of_products(words, weights));
-}
-
-/* Four pairs of words, in the order (y, z) = 00, 10, 01, 11. */
-SIMD vf mix_pairs(const vi pairs[4], const vf share[3])
-{
-	const vi weights = word_weights(share[0]);
-	const vf v00 = mix_words(pairs[0], weights), v10 = mix_words(pairs[1], weights);
-	const vf v01 = mix_words(pairs[2], weights), v11 = mix_words(pairs[3], weights);
-	return mix(mix(v00, v10, share[1]), mix(v01, v11, share[1]), share[2]);
-}
-
-/* The values that blocks would give, from single loads, for lanes that lie far apart. Lanes outside
- * the mask load the volume's first voxels, which are in the cache. */
-SIMD vf scattered_sample(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
-			 vm mask)
-{
-	vf share[3];
-	vi index[3];
-	for (int axis = 0; axis < 3; axis++)
-		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
-	const vi lane = vi_add(vi_add(index[0], vi_mul(index[1], vi_set(cast->stride[1]))),
-			       vi_mul(index[2], vi_set(cast->stride[2])));
-	int32_t first[SIMD_LANES];
-	vi_store((uint32_t *)first, vi_select(mask, lane, vi_set(0)));
-	const int64_t up_y = cast->stride[1], up_z = cast->stride[2];
-	const vi pairs[4] = {
-		load_word_pairs(type, cast->voxels, 0, first),
-		load_word_pairs(type, cast->voxels, up_y, first),
-		load_word_pairs(type, cast->voxels, up_z, first),
-		load_word_pairs(type, cast->voxels, up_y + up_z, first),
-	};
-	return mix_pairs(pairs, share);
-}
-
 /* Places within a block: the voxel before each, and the share of the next. */
 SIMD void block_shares(const vf places[3], vf whole[3], vf share[3])
 {
@@ -178,23 +133,6 @@ SIMD vf block_sample(const struct block *block, enum gz_voxel_type type, int wid
 	vi pairs[4];
 	block_pairs(&block->voxels, type, wide, whole, pairs);
 	return mix_pairs(pairs, share);
-}
-
-/* The value at sample k of the lanes of mask, in FETCH_UNITs, wherever they are. */
-SIMD vf fetch_sample(const struct march *m, vf k, vm mask)
-{
-	const struct gz_cast *cast = m->cast;
-	const enum gz_voxel_type type = m->reading.type;
-	vf at[3];
-	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, m->rays->delta[axis], m->rays->datum[axis]);
-	if (m->reading.nearest)
-		return sample_nearest(cast, type, at, mask);
-	if (__builtin_expect(cast->bricks.table != NULL, 0))
-		return (sample_trilinear(cast, type, at, mask) - vf_set(FETCH_OFFSET(type))) *
-		       vf_set(FETCH_UNIT(type));
-	return type == GZ_VOXEL_F32 ? sample_trilinear(cast, type, at, mask)
-				    : scattered_sample(cast, type, at, mask);
 }
 
 #endif

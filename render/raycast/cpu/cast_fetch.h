@@ -204,20 +204,70 @@ SIMD struct look_up stored_look_up(const struct gz_cast *cast)
 }
 
 /* fetch_sample() returns trilinear values less FETCH_OFFSET, in units of 1 / FETCH_UNIT. */
-#ifdef SIMD_BLOCKS
 #define FETCH_UNIT(type)   ((type) == GZ_VOXEL_F32 ? 1.0F : 32767.0F)
 #define FETCH_OFFSET(type) ((type) == GZ_VOXEL_U16 ? 32768.0F : 0.0F)
-#else
-#define FETCH_UNIT(type)   ((void)(type), 1.0F)
-#define FETCH_OFFSET(type) ((void)(type), 0.0F)
 
-/* The value at sample k of the lanes of mask. Every lane fetches its own eight neighbours; sets
- * with wide permutations have their own in cast_block.h. */
+/* Weights of two words: the share of the upper voxel in the high half, the rest in the low half. */
+SIMD vi word_weights(vf share)
+{
+	const vi high = vi_round(share * vf_set(32767));
+	return vi_xor(vi_or(vi_shift_left(high, 16), high), vi_set(0x7FFF));
+}
+
+SIMD vf mix_words(vi words, vi weights)
+{
+	return vf_from_i(vi_sum_of_products(words, weights));
+}
+
+/* Four pairs of words, in the order (y, z) = 00, 10, 01, 11. */
+SIMD vf mix_pairs(const vi pairs[4], const vf share[3])
+{
+	const vi weights = word_weights(share[0]);
+	const vf v00 = mix_words(pairs[0], weights), v10 = mix_words(pairs[1], weights);
+	const vf v01 = mix_words(pairs[2], weights), v11 = mix_words(pairs[3], weights);
+	return mix(mix(v00, v10, share[1]), mix(v01, v11, share[1]), share[2]);
+}
+
+/* The values that blocks would give, from single loads, for lanes that lie far apart. Lanes outside
+ * the mask load the volume's first voxels, which are in the cache. */
+SIMD vf scattered_sample(const struct gz_cast *cast, enum gz_voxel_type type, const vf at[3],
+			 vm mask)
+{
+	vf share[3];
+	vi index[3];
+	for (int axis = 0; axis < 3; axis++)
+		index[axis] = clamp_place(cast, axis, at[axis], &share[axis]);
+	const vi lane = vi_add(vi_add(index[0], vi_mul(index[1], vi_set(cast->stride[1]))),
+			       vi_mul(index[2], vi_set(cast->stride[2])));
+	int32_t first[SIMD_LANES];
+	vi_store((uint32_t *)first, vi_select(mask, lane, vi_set(0)));
+	const int64_t up_y = cast->stride[1], up_z = cast->stride[2];
+	const int bytes = type == GZ_VOXEL_U8 ? 1 : 2;
+	const vi pairs[4] = {
+		load_word_pairs(bytes, cast->voxels, 0, first),
+		load_word_pairs(bytes, cast->voxels, up_y, first),
+		load_word_pairs(bytes, cast->voxels, up_z, first),
+		load_word_pairs(bytes, cast->voxels, up_y + up_z, first),
+	};
+	return mix_pairs(pairs, share);
+}
+
+/* The value at sample k of the lanes of mask, in FETCH_UNITs, wherever they are. */
 SIMD vf fetch_sample(const struct march *m, vf k, vm mask)
 {
-	return sample_at(m->cast, m->reading.type, m->reading.nearest, m->rays, k, mask);
+	const struct gz_cast *cast = m->cast;
+	const enum gz_voxel_type type = m->reading.type;
+	vf at[3];
+	for (int axis = 0; axis < 3; axis++)
+		at[axis] = vf_fma(k, m->rays->delta[axis], m->rays->datum[axis]);
+	if (m->reading.nearest)
+		return sample_nearest(cast, type, at, mask);
+	if (__builtin_expect(cast->bricks.table != NULL, 0))
+		return (sample_trilinear(cast, type, at, mask) - vf_set(FETCH_OFFSET(type))) *
+		       vf_set(FETCH_UNIT(type));
+	return type == GZ_VOXEL_F32 ? sample_trilinear(cast, type, at, mask)
+				    : scattered_sample(cast, type, at, mask);
 }
-#endif
 
 /* For values as fetch_sample() returns them. */
 SIMD struct look_up look_up_of(const struct gz_cast *cast, struct reading reading)

@@ -4,8 +4,9 @@
  * The kernel is written once and compiled once for each instruction set. The file of a set
  * (cast_portable.c, cast_avx2.c, cast_avx512.c) includes the set's vocabulary (simd_avx2.h, ...),
  * which defines vectors of floats (vf), of integers (vi) and masks (vm) with their operations, then
- * this file, and is compiled with the set's flags. gz_cast_kernels_find() chooses at run time. Sets
- * with wide permutations (SIMD_BLOCKS) also march rays side by side (cast_together.h). Within a
+ * this file, and is compiled with the set's flags. gz_cast_kernels_find() chooses at run time. Rays
+ * march side by side (cast_beam.h); sets with wide permutations (SIMD_BLOCKS) fetch voxels by
+ * blocks (cast_together.h). Within a
  * set, DEFINE_TILE makes one kernel for each voxel type, interpolation and variant; these are
  * constants of the kernel, so that the compiler drops what it does not need.
  *
@@ -16,12 +17,10 @@
  */
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cast_fetch.h"
-#include "render/raycast/cpu/cast_rays.h"
-#ifdef SIMD_BLOCKS
-#include "render/raycast/cpu/cast_together.h"
-#endif
 #include "render/raycast/cpu/cast_preintegrated.h"
+#include "render/raycast/cpu/cast_rays.h"
 #include "render/raycast/cpu/cast_shade.h"
+#include "render/raycast/cpu/cast_together.h"
 
 /* For lanes that ask: find how far their samples show something, or advance past empty space. */
 SIMD void look_ahead(const struct gz_cast *cast, const struct rays *rays, vm asks, vf *k, vf *until)
@@ -116,14 +115,9 @@ SIMD uint32_t march_whole(const struct march *m, const struct look_up *look_up, 
 	const vm alive = rays_alive(m, m->rays, light);
 	if (!vm_any(alive))
 		return 0;
-#ifdef SIMD_GATHERS
-	if (m->cast->fine[0].flags)
-		return march_fine(m, look_up, alive, light);
-#endif
 	return march_apart(m, look_up, alive, light);
 }
 
-#ifdef SIMD_BLOCKS
 /* All whole segments of a tile: its rays side by side if one block serves them, otherwise those of
  * each register. */
 SIMD uint32_t march_beams(const struct march *m, const struct look_up *look_up,
@@ -143,17 +137,14 @@ SIMD uint32_t march_beams(const struct march *m, const struct look_up *look_up,
 	}
 	return samples;
 }
-#endif
 
 /* All whole segments of a tile. */
 SIMD uint32_t march_tile(const struct march *m, struct light light[TILE_PARTS])
 {
 	const struct look_up look_up = look_up_of(m->cast, m->reading);
 	uint32_t samples = 0;
-#ifdef SIMD_BLOCKS
 	if (m->cast->fine[0].flags)
 		return march_beams(m, &look_up, light);
-#endif
 	for (int part = 0; part < TILE_PARTS; part++) {
 		const struct march one = march_of_part(m, part);
 		samples += march_whole(&one, &look_up, &light[part]);

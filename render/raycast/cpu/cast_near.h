@@ -54,7 +54,7 @@ SIMD float near_base(const struct gz_cast *cast, int axis, const struct rays *ra
 	const vm forward = vm_and(mask, vf_less(vf_set(0), rays->delta[axis]));
 	const float first = vm_any(forward) ? floorf(vf_least_of(at, mask))
 					    : floorf(vf_greatest_of(at, mask)) - (BLOCK_EDGE - 2);
-	return fminf(fmaxf(first, 1), cast->dims[axis] - (BLOCK_EDGE + 2));
+	return lesser(greater(first, 1), cast->dims[axis] - (BLOCK_EDGE + 2));
 }
 
 /* Load the blocks around places. */

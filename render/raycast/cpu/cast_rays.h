@@ -13,6 +13,17 @@
 #include "render/raycast/cpu/simd_light.h"
 #include "render/raycast/shared/macrocells.h"
 
+/* The lesser and the greater of two numbers: fminf() and fmaxf() are calls, for the sake of NaN. */
+SIMD float lesser(float a, float b)
+{
+	return a < b ? a : b;
+}
+
+SIMD float greater(float a, float b)
+{
+	return a > b ? a : b;
+}
+
 /* The rays of one register. After k steps a ray is at start + k * delta in voxel coordinates, which
  * is datum + k * delta counted from the first datum. */
 struct rays {

@@ -377,7 +377,7 @@ SIMD vf walk_to_light(const struct gz_cast *cast, struct reading reading, float 
 	const float steps = (float)shadow->steps;
 	const float unit = (shadow->reach - GZ_SHADOW_START) / (steps * steps);
 	for (float i = 0, next; i < steps; i = next) {
-		next = fminf(i + (i < GZ_SHADOW_FIRST ? 1 : longer), steps);
+		next = lesser(i + (i < GZ_SHADOW_FIRST ? 1 : longer), steps);
 		const float from = GZ_SHADOW_START + unit * (i * i),
 			    planned = unit * (next * next - i * i);
 		const vf length = vf_min(leave - vf_set(from), vf_set(planned));

@@ -3,6 +3,9 @@
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #define SIMD_LANES 4
 
@@ -157,17 +160,24 @@ SIMD vm vm_but(vm a, vm b)
 {
 	return a & ~b;
 }
+/* Bit i is lane i. */
+SIMD unsigned vm_bits(vm a)
+{
+#ifdef __SSE2__
+	return (unsigned)_mm_movemask_ps((__m128)a);
+#else
+	unsigned bits = 0;
+	EACH_LANE bits |= a[lane] ? 1U << lane : 0;
+	return bits;
+#endif
+}
 SIMD int vm_any(vm a)
 {
-	int32_t any = 0;
-	EACH_LANE any |= a[lane];
-	return any != 0;
+	return vm_bits(a) != 0;
 }
 SIMD uint32_t vm_count(vm a)
 {
-	int32_t sum = 0;
-	EACH_LANE sum -= a[lane];
-	return (uint32_t)sum;
+	return (uint32_t)(UINT64_C(0x4332322132212110) >> (4 * vm_bits(a)) & 15);
 }
 SIMD vm vm_all(void)
 {
@@ -179,29 +189,114 @@ SIMD vm vm_from_bits(uint32_t bits)
 	EACH_LANE a[lane] = (bits >> lane & 1) ? -1 : 0;
 	return a;
 }
+/* 32 bits of each lane from base + index * scale bytes; zero outside the mask. Lanes outside read
+ * the first ones, since that takes less time than to ask. */
 SIMD vi vi_gather(const void *base, vi index, int scale, vm mask)
 {
-	vi a = { 0 };
-	EACH_LANE if (mask[lane])
-	{
-		int32_t bits;
-		memcpy(&bits, (const char *)base + (int64_t)index[lane] * scale, sizeof bits);
-		a[lane] = bits;
-	}
-	return a;
+	int32_t bits[SIMD_LANES];
+	const vi from = index & mask;
+	EACH_LANE memcpy(&bits[lane], (const char *)base + (int64_t)from[lane] * scale,
+			 sizeof bits[lane]);
+	return vi_load(bits) & mask;
 }
 SIMD vf vf_gather(const float *base, vi index, vm mask)
 {
 	return vf_bits(vi_gather(base, index, 4, mask));
 }
-/* Two 32-bit words from base + index * 8 bytes; zero outside the mask. */
-SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second)
-{
-	*first = vf_bits(vi_gather(base, index, 8, mask));
-	*second = vi_gather((const char *)base + 4, index, 8, mask);
-}
-/* gather_pair() of all lanes. */
+/* Two 32-bit words of each lane from base + index * 8 bytes. */
 SIMD void load_pairs(const void *base, vi index, vf *first, vi *second)
 {
-	gather_pair(base, index, vm_all(), first, second);
+	typedef int64_t two __attribute__((vector_size(16)));
+	int64_t words[SIMD_LANES];
+	EACH_LANE memcpy(&words[lane], (const char *)base + (int64_t)index[lane] * 8,
+			 sizeof words[lane]);
+	const vi low = (vi)(two) { words[0], words[1] }, high = (vi)(two) { words[2], words[3] };
+#ifdef __clang__
+	*first = (vf)__builtin_shufflevector(low, high, 0, 2, 4, 6);
+	*second = __builtin_shufflevector(low, high, 1, 3, 5, 7);
+#else
+	*first = (vf)__builtin_shuffle(low, high, (vi) { 0, 2, 4, 6 });
+	*second = __builtin_shuffle(low, high, (vi) { 1, 3, 5, 7 });
+#endif
+}
+/* load_pairs(), zero outside the mask. */
+SIMD void gather_pair(const void *base, vi index, vm mask, vf *first, vi *second)
+{
+	vf a;
+	vi b;
+	load_pairs(base, index & mask, &a, &b);
+	*first = (vf)((vi)a & mask);
+	*second = b & mask;
+}
+
+/* What only beams need. */
+
+/* 0, 1, 2, ... */
+SIMD vf vf_counting(void)
+{
+	return (vf) { 0, 1, 2, 3 };
+}
+/* To the nearest whole number, of numbers whose size is below 2^22. */
+SIMD vf vf_nearest(vf a)
+{
+	const vf much = vf_set(0x1.8p23F);
+	return (a + much) - much;
+}
+/* The least and the greatest of the lanes of a mask. */
+SIMD float vf_least_of(vf a, vm mask)
+{
+	float least = INFINITY;
+	EACH_LANE if (mask[lane] && a[lane] < least) least = a[lane];
+	return least;
+}
+SIMD float vf_greatest_of(vf a, vm mask)
+{
+	return -vf_least_of(vf_set(0) - a, mask);
+}
+/* Store the lanes of a mask side by side. Writes up to SIMD_LANES floats. Returns how many. */
+SIMD int vf_store_packed(float *x, vf a, vm mask)
+{
+	const unsigned bits = vm_bits(mask);
+	int count = 0;
+	EACH_LANE
+	{
+		x[count] = a[lane];
+		count += bits >> lane & 1;
+	}
+	return count;
+}
+SIMD vi vi_xor(vi a, vi b)
+{
+	return a ^ b;
+}
+SIMD vm vi_less(vi a, vi b)
+{
+	return a < b;
+}
+SIMD vi vi_shift_right_each(vi a, vi by)
+{
+	return (vi)((vu)a >> (vu)by);
+}
+/* Of two signed words a lane: low * low + high * high. */
+SIMD vi vi_sum_of_products(vi a, vi b)
+{
+#ifdef __SSE2__
+	return (vi)_mm_madd_epi16((__m128i)a, (__m128i)b);
+#else
+	const vi low = (vi)((vu)a << 16) >> 16, other = (vi)((vu)b << 16) >> 16;
+	return low * other + (a >> 16) * (b >> 16);
+#endif
+}
+/* For each lane two neighbours of `bytes` a voxel along x, from index + `from`, as words, of 16-bit
+ * values less 32768. */
+SIMD vi load_word_pairs(int bytes, const void *voxels, int64_t from,
+			const int32_t index[SIMD_LANES])
+{
+	const char *base = (const char *)voxels + from * bytes;
+	int32_t bits[SIMD_LANES];
+	EACH_LANE memcpy(&bits[lane], base + (int64_t)index[lane] * bytes, sizeof bits[lane]);
+	const vi pair = vi_load(bits);
+	if (bytes == 1)
+		return (pair & 0xFF) | (vi)((vu)(pair & 0xFF00) << 8);
+	return pair ^ (int32_t)0x80008000;
 }
