@@ -95,8 +95,7 @@ class Start(WindowCase):
             """Whether there are bright letters, which no panel dims, on dark places."""
             return 20 < sum(
                 min(picture.at(x, y)) > 150 > 100 > max(quiet.at(x, y))
-                for x in range(SIZE[0] // 2, SIZE[0] - 60)
-                for y in range(SIZE[1] - 30, SIZE[1] - 10))
+                for x in range(80, SIZE[0] - 60) for y in range(SIZE[1] - 45, SIZE[1] - 10))
 
         for _ in range(2):
             self.click(left - 34, top)  # beside the buttons: it gets the focus
