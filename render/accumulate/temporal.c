@@ -201,7 +201,7 @@ static void mark_tiles(const struct gz_temporal *temporal, const struct gz_plan 
 		const int x0 = tile->x - temporal->shift[0], y0 = tile->y - temporal->shift[1];
 		const int down = GZ_TILE_EDGE * spacing;
 		const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
-		for (int y = y0; y < y0 + down && spacing > 1; y++)
+		for (int y = y0; y < y0 + down && (spacing > 1 || across > down); y++)
 			for (int x = x0; x < x0 + across; x++)
 				mark_pixel(temporal, x, y, (uint8_t)(BETWEEN + tile->layer));
 		mark_tile_rays(temporal, plan, tile);

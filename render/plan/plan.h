@@ -8,9 +8,8 @@
  * are multiples of G: the lattice is fixed to the screen, not to the gaze. A square tile takes
  * every lattice point of its block. A quincunx tile takes every second one, like the black fields
  * of a chessboard: a lattice of spacing G * sqrt(2), turned by 45 degrees, which is the rung
- * between G and 2G. Quincunx tiles lie on layers of spacing 2 or more. They come in pairs, one
- * above the other, that fill a square of 2 * GZ_TILE_EDGE spacings whose corner is a multiple of
- * its edge.
+ * between G and 2G. Quincunx tiles come in pairs, one above the other, that fill a square of
+ * 2 * GZ_TILE_EDGE spacings whose corner is a multiple of its edge.
  *
  * Lattice point (i, j) of spacing G is the ray through the centre of pixel (i * G, j * G). Points
  * may lie beyond the right and lower edge of the picture, so that every pixel lies between four

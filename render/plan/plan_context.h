@@ -66,15 +66,16 @@ void gz_plan_set_table_curves(struct gz_plan_context *context);
  *  are in rays and need not be whole. The spacing grows with the distance from the gaze. */
 double gz_plan_spacing_at(const struct gz_plan_context *context, double x, double y);
 
-/** Rungs of the ladder of spacings: 1, 2, 2 sqrt 2, 4, ... 16 sqrt 2, 32, each with its step. */
-#define GZ_LADDER_RUNGS 10
+/** Rungs of the ladder of spacings: 1, sqrt 2, 2, 2 sqrt 2, ... 16 sqrt 2, 32, each with its step.
+ */
+#define GZ_LADDER_RUNGS 11
 
-/** Spacings of the rungs, px. Rung 2k - 1 is the square lattice of layer k, rung 2k its quincunx;
- *  rung 0 is layer 0. */
+/** Spacings of the rungs, px. Rung 2k is the square lattice of layer k, rung 2k + 1 its quincunx.
+ */
 extern const double gz_ladder_px[GZ_LADDER_RUNGS];
 
-/** The coarsest rung whose spacing is at most @p spacing_px. 0 below 2 px, where the display is
- *  coarser than the eye. */
+/** The coarsest rung whose spacing is at most @p spacing_px. 0 below
+ *  sqrt 2 px. */
 int gz_ladder_rung(double spacing_px);
 
 /** Set the plan's step multipliers by the context's step rule. */

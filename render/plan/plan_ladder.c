@@ -25,7 +25,7 @@ static double block_spacing(const struct gz_plan_context *context, int x, int y,
 
 static int rung_of(int layer, int pattern)
 {
-	return layer == 0 ? 0 : 2 * layer - (pattern == GZ_TILE_SQUARE);
+	return 2 * layer + (pattern == GZ_TILE_QUINCUNX);
 }
 
 static void append_node(const struct gz_plan_context *context, struct gz_plan *plan, int x, int y,
@@ -69,9 +69,9 @@ static void subdivide(const struct gz_plan_context *context, struct gz_plan *pla
 	}
 	const int half = edge / 2;
 	const double spacing = block_spacing(context, x, y, edge);
-	if (spacing >= gz_ladder_px[2 * level - 1]) {
+	if (spacing >= gz_ladder_px[2 * level]) {
 		append_node(context, plan, x, y, level, GZ_TILE_SQUARE);
-	} else if (level > 1 && spacing >= gz_ladder_px[2 * level - 2]) {
+	} else if (spacing >= gz_ladder_px[2 * level - 1]) {
 		append_node(context, plan, x, y, level - 1, GZ_TILE_QUINCUNX);
 		append_node(context, plan, x, y + half, level - 1, GZ_TILE_QUINCUNX);
 	} else {

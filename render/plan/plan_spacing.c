@@ -236,10 +236,9 @@ double gz_plan_contrast_spacing_px(const struct gz_foveation *foveation,
 
 /* Step lengths. */
 
-/* Powers of two and, from 2 on, the quincunx between them. Chosen: no rung between 1 and 2, where
- * the display is coarser than the eye, so that the picture equals the full one there. */
+/* Powers of two and the quincunx between them. */
 const double gz_ladder_px[GZ_LADDER_RUNGS] = {
-	1, 2, 2 * M_SQRT2, 4, 4 * M_SQRT2, 8, 8 * M_SQRT2, 16, 16 * M_SQRT2, 32,
+	1, M_SQRT2, 2, 2 * M_SQRT2, 4, 4 * M_SQRT2, 8, 8 * M_SQRT2, 16, 16 * M_SQRT2, 32,
 };
 
 int gz_ladder_rung(double spacing_px)
@@ -263,7 +262,7 @@ static void make_even_ladder(double top, struct gz_plan *plan)
 /* Longest steps by rung. Chosen: they grow more slowly than the spacing, since errors along a ray
  * change shapes instead of only blurring them. */
 static const double longest_steps[GZ_LADDER_RUNGS] = {
-	1, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8,
+	1, 1.4, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8,
 };
 
 /* With longer steps a ray misses most of a volume. */

@@ -205,7 +205,7 @@ static void foveated_pictures_equal_every_pixel_where_rays_are(void **state)
 	joined_draw(&params, 2, &joined);
 	struct gz_image full = joined_copy(joined.image);
 	joined.foveation = small_scene_foveation();
-	joined.foveation.acuity_slope *= 20; /* so that the rim is coarse */
+	joined.foveation.acuity_slope *= 15; /* so that the rim is coarse */
 	joined_draw(&params, 2, &joined);
 	const struct gz_plan *plan = gz_picture_maker_plan(joined.maker);
 	assert_true(plan->ray_count < (size_t)WIDTH * HEIGHT * 3 / 4);

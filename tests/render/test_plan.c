@@ -168,7 +168,8 @@ static void check_fovea(int method, double full_deg, struct gz_point gaze, bool 
 		if (gz_display_angle_deg(&display, gaze, at) >= 2.499) /* floats */
 			continue;
 		within++;
-		coarse += plan.layers[tile->layer].spacing > 1 || plan.steps[tile->step] > 1;
+		coarse += plan.layers[tile->layer].spacing > 1 || tile->pattern != GZ_TILE_SQUARE ||
+			  plan.steps[tile->step] > 1;
 	}
 	assert_true(within > 100);
 	if ((coarse == 0) != whole)
@@ -189,9 +190,10 @@ static void fovea_is_whole_on_a_fine_display(void **state)
 static void acuity_takes_few_rays(void **state)
 {
 	(void)state;
-	/* A ladder of powers of two takes 10.5 % at 1080p; the quincunx rungs must do better. */
+	/* A ladder of powers of two takes 10.5 % at 1080p, and one without a rung between 1 and 2
+	 * 8.5 %; the quincunx rungs must do better. */
 	struct gz_plan plan = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5F, 0.45F }, 1920, 1080);
-	if (plan.ray_count > 0.09 * 1920 * 1080)
+	if (plan.ray_count > 0.077 * 1920 * 1080)
 		fail_msg("%llu rays", (unsigned long long)plan.ray_count);
 	gz_plan_free(&plan);
 	plan = make(GZ_METHOD_ACUITY, (struct gz_point) { 0.5F, 0.45F }, 3840, 2160);
@@ -425,8 +427,8 @@ static void rectangles_are_coarser_away_from_the_gaze(void **state)
 				   (one->to[1] - one->from[1]) / one->spacing;
 		}
 		/* rectangles enclose ellipses and overlap, and a quincunx counts twice: measured
-		 * 1.9 for acuity */
-		if (samples > 2 * (double)plan.ray_count)
+		 * 2.15 for acuity */
+		if (samples > 2.2 * (double)plan.ray_count)
 			fail_msg("%s: %g samples for %llu rays", gz_method_names[method], samples,
 				 (unsigned long long)plan.ray_count);
 		gz_plan_free(&plan);

@@ -43,20 +43,23 @@ static enum gz_result prepare_blocks(struct gz_lattices *lattices, const struct 
 		lattices->block_capacity = needed;
 	}
 	lattices->block_columns = columns;
+	lattices->block_rows = rows;
 	memset(lattices->blocks, 0, needed);
 	return GZ_OK;
 }
 
 void gz_lattices_mark(struct gz_lattices *lattices, const struct gz_tile *tile)
 {
-	if (tile->layer == 0)
+	/* Two quincunx tiles of layer 0 share a block. */
+	if (tile->layer == 0 && (tile->pattern == GZ_TILE_SQUARE || tile->y % GZ_BLOCK_EDGE != 0))
 		return;
-	const int edge = GZ_TILE_EDGE * lattices->layers[tile->layer].spacing / GZ_BLOCK_EDGE;
-	const size_t width = (size_t)(tile->pattern == GZ_TILE_QUINCUNX ? 2 * edge : edge);
+	const int down = GZ_TILE_EDGE * lattices->layers[tile->layer].spacing;
+	const int across = tile->pattern == GZ_TILE_QUINCUNX ? 2 * down : down;
+	const size_t width = (size_t)(across / GZ_BLOCK_EDGE);
 	uint8_t *row = lattices->blocks +
 		       (ptrdiff_t)(tile->y / GZ_BLOCK_EDGE) * lattices->block_columns +
 		       tile->x / GZ_BLOCK_EDGE;
-	for (int i = 0; i < edge; i++, row += lattices->block_columns)
+	for (int i = 0; i < down; i += GZ_BLOCK_EDGE, row += lattices->block_columns)
 		memset(row, 2 * tile->layer + tile->pattern, width);
 }
 

@@ -29,10 +29,10 @@ struct gz_lattices {
 	uint32_t *memory; /**< for the layers outside the picture */
 	size_t capacity;  /**< points */
 	/** For a pyramid: 2 * layer + pattern of the tile at each block of GZ_BLOCK_EDGE x
-	 *  GZ_BLOCK_EDGE pixels; 0 for tiles of layer 0. */
+	 *  GZ_BLOCK_EDGE pixels; 0 for square tiles of layer 0. */
 	uint8_t *blocks;
 	size_t block_capacity;
-	int block_columns;
+	int block_columns, block_rows;
 };
 
 /** Lay out the layers of @p plan. The first of spacing 1 lies in @p picture, which has the plan's

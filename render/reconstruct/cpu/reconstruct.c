@@ -45,7 +45,9 @@ struct reconstruction {
 	const struct gz_plan *plan;
 	const struct gz_reconstructed *planes;
 	int count;
-	int square_columns; /* of a pyramid */
+	/* of a pyramid: */
+	int square_columns;
+	bool finest; /* gz_reconstruct_has_finest() */
 };
 
 /* Pixels of a band whose shares are found (SHARES) and mixed (BAND) at a time. Chosen: bands are
@@ -233,24 +235,46 @@ static void fill_pyramid_square(void *user, size_t part, int worker)
 	(void)worker;
 	const struct reconstruction *job = user;
 	for (int i = 0; i < job->count; i++) {
-		gz_reconstruct_square(job->plan, &job->planes[i], (int)part % job->square_columns,
+		struct gz_reconstructed plane = job->planes[i];
+		/* Beside them, gz_reconstruct_finest() reads what is empty. */
+		plane.leaves_empty = plane.leaves_empty && !job->finest;
+		gz_reconstruct_square(job->plan, &plane, (int)part % job->square_columns,
 				      (int)part / job->square_columns);
 		job->planes[i].filters->settle();
 	}
+}
+
+static void fill_finest_row(void *user, size_t part, int worker)
+{
+	(void)worker;
+	const struct reconstruction *job = user;
+	for (int i = 0; i < job->count; i++)
+		gz_reconstruct_finest(job->plan, &job->planes[i], (int)part);
+}
+
+static void fill_pyramid(struct reconstruction *job, struct gz_workers *workers)
+{
+	int square_rows;
+	const int pixel_rows = job->plan->height;
+	/* All planes have the same tiles. */
+	job->finest = gz_reconstruct_has_finest(job->planes[0].lattices);
+	gz_reconstruct_squares(job->plan, &job->square_columns, &square_rows);
+	gz_workers_run(workers, fill_pyramid_square, job,
+		       (size_t)job->square_columns * (size_t)square_rows);
+	if (job->finest)
+		gz_workers_run(workers, fill_finest_row, job,
+			       (size_t)((pixel_rows + GZ_BLOCK_EDGE - 1) / GZ_BLOCK_EDGE));
 }
 
 void gz_reconstruct_planes(const struct gz_plan *plan, const struct gz_reconstructed planes[],
 			   int count, struct gz_workers *workers)
 {
 	struct reconstruction job = { .plan = plan, .planes = planes, .count = count };
-	int square_rows;
 	switch (plan->reconstruction) {
 	case GZ_RECONSTRUCT_DIRECT:
 		return;
 	case GZ_RECONSTRUCT_PYRAMID:
-		gz_reconstruct_squares(plan, &job.square_columns, &square_rows);
-		gz_workers_run(workers, fill_pyramid_square, &job,
-			       (size_t)job.square_columns * (size_t)square_rows);
+		fill_pyramid(&job, workers);
 		return;
 	case GZ_RECONSTRUCT_REGIONS:
 		gz_workers_run(workers, fill_region_rows, &job,

@@ -128,6 +128,15 @@ void gz_reconstruct_squares(const struct gz_plan *plan, int *out_columns, int *o
 void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_reconstructed *plane,
 			   int column, int row);
 
+/** Whether quincunx tiles lie on the lattice of spacing 1, so that gz_reconstruct_finest() must
+ *  follow the squares. */
+bool gz_reconstruct_has_finest(const struct gz_lattices *lattices);
+
+/** Fill the pixels that quincunx tiles of spacing 1 lack in one row of blocks, after all squares.
+ *  Threads: any number, each with rows of its own. */
+void gz_reconstruct_finest(const struct gz_plan *plan, const struct gz_reconstructed *plane,
+			   int block_row);
+
 /** The lesser of two numbers. */
 static inline int gz_least(int a, int b)
 {

@@ -8,6 +8,9 @@
  * are made more than once, with equal results, so squares do not depend on each other. A square
  * skips the lattices that are coarser than all tiles it reads. Where all points that the filters
  * would read have one colour, the result is that colour and nothing is computed.
+ *
+ * Quincunx tiles of spacing 1 are cast into the picture itself. What they lack is filled after all
+ * squares, from pixels of neighbouring squares, too.
  */
 #include <string.h>
 
@@ -416,6 +419,65 @@ void gz_reconstruct_square(const struct gz_plan *plan, const struct gz_reconstru
 		fill_square_level(&square, level);
 		if (level > 0 && level == finest && fill_flat_square(&square, level))
 			return;
+	}
+}
+
+/* The mark of quincunx tiles of spacing 1, and how many blocks of them a scratch buffer holds. */
+enum { FINEST_MARK = GZ_TILE_QUINCUNX, RUN_BLOCKS = SQUARE_WIDTH / 2 / BLOCK };
+
+bool gz_reconstruct_has_finest(const struct gz_lattices *lattices)
+{
+	return memchr(lattices->blocks, FINEST_MARK,
+		      (size_t)lattices->block_columns * (size_t)lattices->block_rows) != NULL;
+}
+
+/* Copy every second pixel, those with x + y even, of columns [x0, x1) of a row; outside the picture
+ * the mirrored ones. Other threads may write the pixels between them. */
+static void copy_cast_pixels(const struct patch *patch, const uint32_t *picture, int x0, int x1,
+			     int y)
+{
+	const uint32_t *row = picture + (ptrdiff_t)mirrored(y, patch->rows) * patch->columns;
+	for (int x = x0 + ((x0 ^ y) & 1); x < x1; x += 2)
+		*point_at(patch, x, y) =
+			row[x >= 0 && x < patch->columns ? x : mirrored(x, patch->columns)];
+}
+
+/* Fill a run of quincunx tiles of spacing 1 in a scratch buffer, and write what they lack. */
+static void fill_finest_run(struct square *square, const struct range *run, uint32_t *picture)
+{
+	uint32_t memory[(GZ_BLOCK_EDGE + 2 * REACH + 1) * PATCH_STRIDE];
+	struct patch *patch = &square->patches[0];
+	patch->all = *run;
+	patch->stride = PATCH_STRIDE;
+	patch->first = memory + (ptrdiff_t)REACH * PATCH_STRIDE + LEFT;
+	for (int y = run->y0 - REACH; y < run->y1 + REACH; y++)
+		copy_cast_pixels(patch, picture, run->x0 - REACH, run->x1 + REACH, y);
+	for (int y = run->y0; y < run->y1; y += 2)
+		fill_quincunx_rows(square, 0, run->x0, run->x1, y, run->y1);
+	for (int y = run->y0; y < run->y1; y++)
+		for (int x = run->x0 + (y % 2 == 0); x < run->x1; x += 2)
+			picture[(ptrdiff_t)y * patch->columns + x] = *point_at(patch, x, y);
+}
+
+void gz_reconstruct_finest(const struct gz_plan *plan, const struct gz_reconstructed *plane,
+			   int block_row)
+{
+	const struct gz_lattices *lattices = plane->lattices;
+	const uint8_t *marks = lattices->blocks + (ptrdiff_t)block_row * lattices->block_columns;
+	const uint8_t *end = marks + (plan->width + GZ_BLOCK_EDGE - 1) / GZ_BLOCK_EDGE;
+	struct square square = { .plan = plan, .lattices = lattices, .filters = plane->filters };
+	square.patches[0].columns = plan->width;
+	square.patches[0].rows = plan->height;
+	struct range run = { .y0 = block_row * GZ_BLOCK_EDGE };
+	run.y1 = gz_least(run.y0 + GZ_BLOCK_EDGE, plan->height);
+	for (const uint8_t *at = marks;
+	     at < end && (at = memchr(at, FINEST_MARK, (size_t)(end - at))) != NULL;) {
+		const uint8_t *from = at;
+		while (at < end && *at == FINEST_MARK && at - from < RUN_BLOCKS)
+			at++;
+		run.x0 = (int)(from - marks) * GZ_BLOCK_EDGE;
+		run.x1 = gz_least((int)(at - marks) * GZ_BLOCK_EDGE, plan->width);
+		fill_finest_run(&square, &run, plane->picture);
 	}
 }
 
