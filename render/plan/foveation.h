@@ -77,6 +77,8 @@ struct gz_foveation {
 	double acuity_foveal_deg;  /**< omega0: degrees per cycle at the gaze */
 	double acuity_full_deg;    /**< acuity, contrast: every pixel may have a ray up to here */
 	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
+	double edge_contrast;      /**< acuity: least contrast of an edge, (0, 1]; 1: none is one */
+	double edge_finest;        /**< acuity: spacing at edges, times what the eye resolves */
 	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */
 	double contrast_first;     /**< spacing of the first rays, times what the eye resolves */
 	double contrast_finest;    /**< finest spacing, times what the eye resolves, (0, 1] */

@@ -109,6 +109,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.follows_gaze = true,
 		.sharp_at_gaze = true,
 		.can_be_coarser = true,
+		.refines_edges = true,
 		.is_pyramid = true,
 		.own_steps = GZ_STEPS_RUNG,
 		.set_curves = gz_plan_set_foveal_acuity_curve,

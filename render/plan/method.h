@@ -45,6 +45,7 @@ struct gz_method {
 	bool needs_table;    /**< a table of spacings must be given */
 	bool has_borders;    /**< its regions meet at borders, which foveation.blend_px softens */
 	bool refines;        /**< its first tiles show where further ones go: gz_plan_refine() */
+	bool refines_edges;  /**< so do those of its tiles that lie at edges: foveation.edge_… */
 	bool is_pyramid; /**< its lattices form a pyramid, which foveation.reconstruction fills */
 	enum gz_plan_steps own_steps; /**< what GZ_STEP_METHOD means */
 	/** Pyramids: set the context's spacing by eccentricity, and its step if own_steps is

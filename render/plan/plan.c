@@ -140,7 +140,10 @@ enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from, const float *co
 
 int gz_plan_rounds(const struct gz_plan *plan)
 {
-	return plan->refines ? plan->made_for.foveation.contrast_rounds : 1;
+	const struct gz_foveation *foveation = &plan->made_for.foveation;
+	if (!plan->refines)
+		return 1;
+	return gz_method_of(foveation)->refines ? foveation->contrast_rounds : 2;
 }
 
 struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation,

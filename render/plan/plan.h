@@ -135,8 +135,8 @@ struct gz_plan_request {
 	 */
 	double steps_per_px;
 	/** The technique refines the plan while it draws (gz_plan_refine()): methods with
-	 *  gz_method.refines emit the tiles of their first round. Otherwise they emit what they
-	 *  would need to show anything. Other methods ignore it. */
+	 *  gz_method.refines or refines_edges emit the tiles of their first round. Otherwise they
+	 * emit what they would need to show anything. Other methods ignore it. */
 	bool refines;
 };
 
@@ -210,7 +210,9 @@ enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct g
  * eye could see more than its rays show is cast again with all the rays that it needs. Its new
  * tiles take the place of the old ones, which stay in the list, marked as replaced. A block becomes
  * as fine as the contrast between its rays asks for (gz_plan_contrast_spacing_px()), but never
- * finer than the acuity of the eye.
+ * finer than the acuity of the eye times foveation.contrast_finest. A method with
+ * gz_method.refines_edges takes foveation.edge_finest times the acuity of the eye where the
+ * contrast is foveation.edge_contrast or more.
  *
  * @param from       first tile of the last round
  * @param contrasts  of each tile from there on: the greatest contrast between neighbouring rays of

@@ -72,6 +72,13 @@ static enum gz_plan_steps steps_of(const struct gz_foveation *foveation)
 	return GZ_STEPS_ONE;
 }
 
+/* Whether a technique that refines plans does so with this method. */
+static bool refines(const struct gz_foveation *foveation)
+{
+	const struct gz_method *method = gz_method_of(foveation);
+	return method->refines || (method->refines_edges && foveation->edge_contrast < 1);
+}
+
 /* Everything but the curves. */
 static void set_geometry(const struct gz_plan_request *request, struct gz_plan_context *out_context)
 {
@@ -97,8 +104,7 @@ static void set_geometry(const struct gz_plan_request *request, struct gz_plan_c
 		.scale_outside = fmin(request->scale, GZ_PLAN_SCALE_OUTSIDE),
 		.widen = request->widen,
 		.steps_per_px = request->steps_per_px,
-		.round = request->refines && request->widen <= 0 &&
-					 gz_method_of(request->foveation)->refines
+		.round = request->refines && request->widen <= 0 && refines(request->foveation)
 				 ? GZ_ROUND_FIRST
 				 : GZ_ROUND_ONLY,
 	};
@@ -176,6 +182,19 @@ static double contrast_spacing(const struct gz_plan_context *context, double ecc
 	return alpha * away / (2 * seen) / deg_per_rad;
 }
 
+/* Spacing of further rays where the contrast is known; @p unit: of rad in px. */
+static double further_spacing(const struct gz_plan_context *context, double spacing,
+			      double eccentricity_rad, double unit)
+{
+	const struct gz_foveation *foveation = context->foveation;
+	if (gz_method_of(foveation)->refines_edges)
+		return context->contrast >= foveation->edge_contrast
+			       ? spacing * foveation->edge_finest
+			       : spacing;
+	return fmax(spacing * foveation->contrast_finest,
+		    contrast_spacing(context, eccentricity_rad) * unit);
+}
+
 /*
  * At the distance |p| from the eye, a length of s mm across the line of sight spans s / |p| rad.
  * Along the radius from the screen's centre a flat screen is seen at a slant and the same length
@@ -190,9 +209,8 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 	if (eccentricity < context->full_rad)
 		spacing = fmin(spacing, 1);
 	if (context->round == GZ_ROUND_FURTHER)
-		spacing = fmax(spacing * context->foveation->contrast_finest,
-			       contrast_spacing(context, eccentricity) * unit);
-	if (context->round == GZ_ROUND_FIRST)
+		spacing = further_spacing(context, spacing, eccentricity, unit);
+	if (context->round == GZ_ROUND_FIRST && gz_method_of(context->foveation)->refines)
 		spacing = context->foveation->contrast_first * fmax(spacing, 1);
 	if (context->scale_all * context->scale_outside > 1)
 		spacing *= budget_scale_at(context, eccentricity);

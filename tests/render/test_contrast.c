@@ -194,6 +194,60 @@ static void first_rays_may_be_those_of_acuity(void **state)
 	gz_plan_free(&acuity);
 }
 
+/* Rays of acuity's first round stay, but for those at edges. */
+static void acuity_is_refined_at_edges_alone(void **state)
+{
+	(void)state;
+	enum { WIDTH = 1280, HEIGHT = 720 };
+	struct gz_foveation foveation = gz_foveation_default();
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	const struct gz_point gaze = { 0.4F, 0.6F };
+	struct gz_plan plan = { 0 }, acuity = { 0 }, finest = { 0 };
+	const struct gz_plan_request request = request_for(&foveation, &display, gaze);
+	assert_int_equal(foveation.method, GZ_METHOD_ACUITY);
+	assert_int_equal(gz_plan_make(&foveation, &display, gaze, WIDTH, HEIGHT, &acuity), GZ_OK);
+	assert_int_equal(gz_plan_rounds(&acuity), 1);
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	assert_int_equal(gz_plan_rounds(&plan), 2);
+	const size_t count = plan.tile_count;
+	assert_int_equal(count, acuity.tile_count);
+	assert_memory_equal(plan.tiles, acuity.tiles, count * sizeof *plan.tiles);
+	double *before = shown_spacings(&plan);
+	float *contrasts = malloc(count * sizeof *contrasts);
+	for (size_t i = 0; i < count; i++)
+		contrasts[i] = (float)foveation.edge_contrast - 0.01F;
+	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	assert_int_equal(plan.tile_count, count);
+	for (size_t i = 0; i < count; i++)
+		contrasts[i] = 1;
+	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	struct gz_foveation fine = foveation;
+	fine.acuity_slope *= foveation.edge_finest;
+	fine.acuity_foveal_deg *= foveation.edge_finest;
+	assert_int_equal(gz_plan_make(&fine, &display, gaze, WIDTH, HEIGHT, &finest), GZ_OK);
+	double *made = shown_spacings(&plan), *wanted = shown_spacings(&finest);
+	int finer = 0;
+	for (int i = 0; i < WIDTH * HEIGHT; i++) {
+		/* Tiles on the lattice of spacing 1 stay. */
+		const double expected = before[i] < 2 ? before[i] : wanted[i];
+		if (made[i] != expected)
+			fail_msg("pixel %d %d: %g, not %g", i % WIDTH, i / WIDTH, made[i],
+				 expected);
+		finer += made[i] < before[i];
+	}
+	assert_true(finer > WIDTH * HEIGHT / 2);
+	foveation.edge_contrast = 1;
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	assert_int_equal(gz_plan_rounds(&plan), 1);
+	free(made);
+	free(wanted);
+	free(before);
+	free(contrasts);
+	gz_plan_free(&plan);
+	gz_plan_free(&acuity);
+	gz_plan_free(&finest);
+}
+
 static void a_plan_made_again_forgets_its_further_rounds(void **state)
 {
 	(void)state;
@@ -484,6 +538,7 @@ TEST_SUITE(contrast)
 		cmocka_unit_test(refined_plans_show_each_pixel_once_and_no_finer_than_allowed),
 		cmocka_unit_test(full_contrast_takes_the_finest_tiles),
 		cmocka_unit_test(first_rays_may_be_those_of_acuity),
+		cmocka_unit_test(acuity_is_refined_at_edges_alone),
 		cmocka_unit_test(a_plan_made_again_forgets_its_further_rounds),
 		cmocka_unit_test(a_technique_that_does_not_refine_takes_the_tiles_of_acuity),
 		cmocka_unit_test(a_contrast_is_shown_as_finely_as_it_is_seen),

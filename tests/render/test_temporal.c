@@ -34,6 +34,7 @@ static void begin(struct bench *bench)
 	bench->scene.display.distance_mm = 300;
 	bench->scene.foveation.acuity_slope = 0.15;
 	bench->scene.foveation.acuity_full_deg = 0; /* the fovea is as wide as the picture */
+	bench->scene.foveation.edge_contrast = 1;   /* keep_frame() has one round */
 	bench->scene.gaze = (struct gz_point) { 0.4F, 0.45F };
 	bench->scene.foveation.method = GZ_METHOD_ACUITY;
 	bench->scene.foveation.step_rule = GZ_STEP_NONE;

@@ -220,6 +220,11 @@ static bool by_contrast(const struct gz_scene_settings *settings)
 	return gz_method_of(&settings->foveation)->refines;
 }
 
+static bool by_edges(const struct gz_scene_settings *settings)
+{
+	return gz_method_of(&settings->foveation)->refines_edges;
+}
+
 static bool with_longer_steps(const struct gz_scene_settings *settings)
 {
 	const int rule = settings->foveation.step_rule;
@@ -311,6 +316,7 @@ static const struct {
 	{ "foveation.reconstruction", with_a_pyramid },
 	{ "foveation.acuity_", by_acuity },
 	{ "foveation.contrast_", by_contrast },
+	{ "foveation.edge_", by_edges },
 	{ "foveation.blend_px", with_borders },
 	{ "foveation.step_floor", by_distance },
 	{ "attention.budget_ms", with_a_scale },

@@ -78,6 +78,8 @@ static const struct {
 	{ "foveation.acuity_step_growth", "growth of steps" },
 	{ "foveation.contrast_threshold", "least contrast seen" },
 	{ "foveation.contrast_first", "first spacing, times" },
+	{ "foveation.edge_contrast", "contrast of an edge" },
+	{ "foveation.edge_finest", "finest spacing there, times" },
 	{ "foveation.contrast_finest", "finest spacing, times" },
 	{ "foveation.contrast_rounds", "rounds of rays" },
 	{ "foveation.mdc_square_px", "fine square, px" },
