@@ -45,12 +45,10 @@ const struct gz_option gz_foveation_options[] = {
 	/* Chosen by docs/results.md: outlines before an empty background, little else. */
 	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "0.9",
 	  .help = "acuity: rays that differ by this contrast or more from their neighbours are at "
-		  "an "
-		  "edge, which gets finer rays; 1 = no edge does" },
+		  "an edge, which gets finer rays; 1 = no edge does" },
 	{ "foveation.edge_finest", GZ_OPTION_DOUBLE, AT(edge_finest), 0.25, 1, .preset = "0.5",
 	  .help = "acuity: how near to each other rays are at such edges, as a multiple of what "
-		  "the "
-		  "eye resolves" },
+		  "the eye resolves" },
 	/* The preset is Geisler and Perry's 1/64. */
 	{ "foveation.contrast_threshold", GZ_OPTION_DOUBLE, AT(contrast_threshold), 0.0001, 1,
 	  .preset = "0.015625", .help = "contrast: least contrast that is seen at the gaze" },
