@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench/stability/stability_bench.h"
+#include "render/plan/method.h"
 #include "render/transfer/transfer_table.h"
 
 /* ---- frames against standard ---- */
@@ -345,7 +346,10 @@ enum gz_result gz_stability_brightness(struct gz_stability_bench *bench,
 		.rays = gz_ray_params_default()
 	};
 	struct ray_check check = built_in_check(bench, &scene, 128, 96);
-	gz_stability_name(outcome, 0, levels_off, 1);
+	/* A method that refines interpolates what differs by less than its threshold: up to 1/32 of
+	 * the luminance, which is 1/64 of a level of 0 to 255. */
+	const bool refines = gz_method_of(&bench->foveation)->refines;
+	gz_stability_name(outcome, 0, levels_off, refines ? 2 : 1);
 	check.fine_rate = 8;
 	check.between = true;
 	enum gz_result result = gz_stability_volume(bench, GZ_STABILITY_SLAB, &scene.volume);

@@ -12,29 +12,49 @@ enum {
 	ROW = 8,                   /* whole vectors */
 };
 
-/* Luminances of a node's points and their neighbours. */
+/* The channels in which eyes see contrast. */
+enum { LUMINANCE, RED_GREEN, BLUE_YELLOW, CHANNELS };
+
+/* A colour in these channels. */
+struct opponent {
+	float of[CHANNELS];
+};
+
+/* Channels of a node's points and their neighbours. */
 struct window {
-	float at[WINDOW][ROW];
+	float at[CHANNELS][WINDOW][ROW];
 };
 
 struct measure_job {
 	const struct gz_plan *plan;
 	const struct gz_lattices *lattices;
 	size_t from;
-	float *contrasts;
+	struct gz_node_contrast *contrasts;
 };
 
 /* Chosen: a display's black with the light of a dim room on it. Darker things look alike. */
 static const float black = 1.0F / 200;
 
-/* Luminance of a pixel, white = 1: a square stands for the curve of sRGB, from which it differs by
- * less than a sixth of a stop where eyes tell shades apart. */
-static float luminance(uint32_t pixel)
+/*
+ * A colour of sRGB, white = 1, in channels. A square stands for the curve of sRGB, from which it
+ * differs by less than a sixth of a stop where eyes tell shades apart.
+ *
+ * With the cones' shares of white l, m and s (Smith and Pokorny's, by the primaries of sRGB):
+ * luminance, 3 (l - m), and (s - (l + m) / 2) / 10. The factors are chosen: cones tell a difference
+ * between l and m of a third of what they need to see a luminance (Chaparro et al., "Colour is what
+ * the eye sees best", 1993, has a fifth to a ninth, of larger spots), and s alone is seen least.
+ */
+static inline struct opponent opponent_of(uint32_t pixel)
 {
-	const float red = (float)(pixel & 255), green = (float)(pixel >> 8 & 255);
-	const float blue = (float)(pixel >> 16 & 255);
-	const float value = 0.2126F * red + 0.7152F * green + 0.0722F * blue;
-	return black + value * value * (1.0F / (255 * 255));
+	const float red = (float)(pixel & 255) * (1.0F / 255);
+	const float green = (float)(pixel >> 8 & 255) * (1.0F / 255);
+	const float blue = (float)(pixel >> 16 & 255) * (1.0F / 255);
+	const float r = red * red, g = green * green, b = blue * blue;
+	return (struct opponent) { {
+		[LUMINANCE] = black + 0.2126F * r + 0.7152F * g + 0.0722F * b,
+		[RED_GREEN] = 0.476F * r - 0.355F * g - 0.121F * b,
+		[BLUE_YELLOW] = 0.0806F * b - 0.0589F * g - 0.0217F * r,
+	} };
 }
 
 /* The level whose lattice has its points cast at a point of a finer or equal level. */
@@ -45,29 +65,36 @@ static int level_at(const struct gz_lattices *lattices, int level, int column, i
 	return (block + 1) / 2; /* a pair of quincunx tiles fills the next coarser lattice */
 }
 
-static float luminance_of(const struct gz_lattice *lattice, int column, int row)
+static struct opponent colour_of(const struct gz_lattice *lattice, int column, int row)
 {
-	return luminance(lattice->points[(size_t)row * lattice->stride + (size_t)column]);
+	return opponent_of(lattice->points[(size_t)row * lattice->stride + (size_t)column]);
 }
 
-/* Luminance at a point of a level. Outside the lattice that of its rim; in a coarser tile, whose
+static struct opponent mixed(struct opponent a, struct opponent b, float share)
+{
+	for (int i = 0; i < CHANNELS; i++)
+		a.of[i] = a.of[i] * (1 - share) + b.of[i] * share;
+	return a;
+}
+
+/* Colour at a point of a level. Outside the lattice that of its rim; in a coarser tile, whose
  * corners may be those of still coarser ones, between its points. */
-static float luminance_at(const struct gz_lattices *lattices, int level, int column, int row)
+static struct opponent colour_at(const struct gz_lattices *lattices, int level, int column, int row)
 {
 	const struct gz_lattice *lattice = &lattices->layers[level];
 	column = column < 0 ? 0 : column < lattice->columns ? column : lattice->columns - 1;
 	row = row < 0 ? 0 : row < lattice->rows ? row : lattice->rows - 1;
 	const int cast = level_at(lattices, level, column, row), shift = cast - level;
 	if (shift <= 0)
-		return luminance_of(lattice, column, row);
+		return colour_of(lattice, column, row);
 	const int x = column >> shift, y = row >> shift;
 	const float u = (float)(column - (x << shift)) / (float)(1 << shift);
 	const float v = (float)(row - (y << shift)) / (float)(1 << shift);
-	const float above = luminance_at(lattices, cast, x, y) * (1 - u) +
-			    luminance_at(lattices, cast, x + 1, y) * u;
-	const float below = luminance_at(lattices, cast, x, y + 1) * (1 - u) +
-			    luminance_at(lattices, cast, x + 1, y + 1) * u;
-	return above * (1 - v) + below * v;
+	const struct opponent above =
+		mixed(colour_at(lattices, cast, x, y), colour_at(lattices, cast, x + 1, y), u);
+	const struct opponent below = mixed(colour_at(lattices, cast, x, y + 1),
+					    colour_at(lattices, cast, x + 1, y + 1), u);
+	return mixed(above, below, v);
 }
 
 /* Whether the window lies within the lattice and in tiles that are no coarser. */
@@ -97,69 +124,115 @@ static void fill_window(const struct gz_lattices *lattices, int level, int colum
 	for (int y = 0; y < WINDOW; y++) {
 		const uint32_t *points = lattice->points +
 					 (ptrdiff_t)(row + y) * (ptrdiff_t)lattice->stride + column;
-		for (int x = 0; x < WINDOW; x++)
-			window->at[y][x] =
-				plain ? luminance(points[x])
-				      : luminance_at(lattices, level, column + x, row + y);
+		for (int x = 0; x < WINDOW; x++) {
+			const struct opponent colour =
+				plain ? opponent_of(points[x])
+				      : colour_at(lattices, level, column + x, row + y);
+			for (int i = 0; i < CHANNELS; i++)
+				window->at[i][y][x] = colour.of[i];
+		}
 	}
 }
 
 /* Contrast of a point with the mean of two neighbours on opposite sides. */
-static float contrast_between(float one, float point, float other)
+static inline float contrast_between(float one, float point, float other, float sum)
 {
-	return fabsf(one + other - 2 * point) / (one + other + 2 * point);
+	return fabsf(one + other - 2 * point) / sum;
 }
 
-static float window_contrast(const struct window *window)
+/* Contrast of each of a node's points along x or along y, whichever is greater. */
+static void channel_contrasts(const struct window *window, int channel,
+			      float out_contrasts[POINTS][ROW])
 {
-	float most[ROW] = { 0 };
-	for (int y = RIM; y < RIM + POINTS; y++)
-		for (int x = RIM; x < RIM + POINTS; x++) {
-			const float *at = &window->at[y][x];
-			const float along_x = contrast_between(at[-1], at[0], at[1]);
-			const float along_y = contrast_between(at[-ROW], at[0], at[ROW]);
-			const float both = along_x > along_y ? along_x : along_y;
-			most[x] = both > most[x] ? both : most[x];
+	for (int y = 0; y < POINTS; y++)
+		for (int x = 0; x < POINTS; x++) {
+			const float *at = &window->at[channel][RIM + y][RIM + x];
+			const float *light = &window->at[LUMINANCE][RIM + y][RIM + x];
+			const float along_x = contrast_between(at[-1], at[0], at[1],
+							       light[-1] + light[1] + 2 * light[0]);
+			const float along_y = contrast_between(
+				at[-ROW], at[0], at[ROW], light[-ROW] + light[ROW] + 2 * light[0]);
+			out_contrasts[y][x] = along_x > along_y ? along_x : along_y;
 		}
-	float contrast = 0;
-	for (int x = RIM; x < RIM + POINTS; x++)
-		contrast = most[x] > contrast ? most[x] : contrast;
-	return contrast;
 }
 
-/* The points that quincunx tiles add lie in the middle of four of the node's. */
-static float quincunx_contrast(const struct measure_job *job, const struct gz_tile *tile,
-			       const struct window *window)
+static inline float greater(float a, float b)
+{
+	return a > b ? a : b;
+}
+
+/* Raise the contrasts of a node's cells to those of their corners. */
+static void raise_cells(float cells[GZ_NODE_CELLS][GZ_NODE_CELLS],
+			const float contrasts[POINTS][ROW])
+{
+	for (int y = 0; y < GZ_NODE_CELLS; y++)
+		for (int x = 0; x < GZ_NODE_CELLS; x++) {
+			const float *at = &contrasts[y][x];
+			const float above = greater(at[0], at[1]);
+			const float below = greater(at[ROW], at[ROW + 1]);
+			cells[y][x] = greater(cells[y][x], greater(above, below));
+		}
+}
+
+static void measure_window(const struct window *window, struct gz_node_contrast *out_contrast)
+{
+	float contrasts[POINTS][ROW];
+	*out_contrast = (struct gz_node_contrast) { 0 };
+	channel_contrasts(window, LUMINANCE, contrasts);
+	raise_cells(out_contrast->luminance, contrasts);
+	for (int i = LUMINANCE + 1; i < CHANNELS; i++) {
+		channel_contrasts(window, i, contrasts);
+		raise_cells(out_contrast->colour, contrasts);
+	}
+}
+
+/* Contrast of a point in the middle of four, (x, y) being the first of these, along a diagonal. */
+static float diagonal_contrast(const struct window *window, int channel, int x, int y,
+			       const struct opponent *middle)
+{
+	const float *at = &window->at[channel][RIM + y][RIM + x];
+	const float *light = &window->at[LUMINANCE][RIM + y][RIM + x];
+	const float twice = 2 * middle->of[LUMINANCE];
+	return greater(contrast_between(at[0], middle->of[channel], at[ROW + 1],
+					light[0] + light[ROW + 1] + twice),
+		       contrast_between(at[1], middle->of[channel], at[ROW],
+					light[1] + light[ROW] + twice));
+}
+
+/* The points that quincunx tiles add lie in the middle of the node's cells. */
+static void add_quincunx(const struct measure_job *job, const struct gz_tile *tile,
+			 const struct window *window, struct gz_node_contrast *contrast)
 {
 	const struct gz_lattice *lattice = &job->lattices->layers[tile->layer];
 	const int column = tile->x / lattice->spacing, row = tile->y / lattice->spacing;
-	float contrast = 0;
-	for (int y = 0; y < GZ_TILE_EDGE; y++)
-		for (int x = 0; x < GZ_TILE_EDGE; x++) {
-			const float *at = &window->at[RIM + y][RIM + x];
+	for (int y = 0; y < GZ_NODE_CELLS; y++)
+		for (int x = 0; x < GZ_NODE_CELLS; x++) {
 			const int at_x = column + 2 * x + 1, at_y = row + 2 * y + 1;
 			if (at_x >= lattice->columns || at_y >= lattice->rows)
 				continue;
-			const float middle = luminance_of(lattice, at_x, at_y);
-			const float down = contrast_between(at[0], middle, at[ROW + 1]);
-			const float up = contrast_between(at[1], middle, at[ROW]);
-			contrast = fmaxf(contrast, fmaxf(down, up));
+			const struct opponent middle = colour_of(lattice, at_x, at_y);
+			float *luminance = &contrast->luminance[y][x];
+			float *colour = &contrast->colour[y][x];
+			*luminance = greater(*luminance,
+					     diagonal_contrast(window, LUMINANCE, x, y, &middle));
+			for (int i = LUMINANCE + 1; i < CHANNELS; i++)
+				*colour = greater(*colour,
+						  diagonal_contrast(window, i, x, y, &middle));
 		}
-	return contrast;
 }
 
-static float tile_contrast(const struct measure_job *job, const struct gz_tile *tile)
+static void measure_tile(const struct measure_job *job, const struct gz_tile *tile,
+			 struct gz_node_contrast *out_contrast)
 {
 	int level;
 	struct window window;
 	if (!gz_plan_node_of(tile, &level) || tile->layer == 0)
-		return 0;
+		return;
 	fill_window(job->lattices, level, (tile->x >> level) - RIM, (tile->y >> level) - RIM,
 		    &window);
-	const float contrast = window_contrast(&window);
-	return tile->pattern == GZ_TILE_QUINCUNX
-		       ? fmaxf(contrast, quincunx_contrast(job, tile, &window))
-		       : contrast;
+	measure_window(&window, out_contrast);
+	if (tile->pattern == GZ_TILE_QUINCUNX)
+		add_quincunx(job, tile, &window, out_contrast);
 }
 
 static void measure_part(void *user, size_t part, int worker)
@@ -168,7 +241,7 @@ static void measure_part(void *user, size_t part, int worker)
 	const struct measure_job *job = user;
 	const size_t first = job->from + part * TILES_A_PART;
 	for (size_t i = first; i < first + TILES_A_PART && i < job->plan->tile_count; i++)
-		job->contrasts[i - job->from] = tile_contrast(job, &job->plan->tiles[i]);
+		measure_tile(job, &job->plan->tiles[i], &job->contrasts[i - job->from]);
 }
 
 enum gz_result gz_contrasts_measure(const struct gz_plan *plan, size_t from,
@@ -177,7 +250,7 @@ enum gz_result gz_contrasts_measure(const struct gz_plan *plan, size_t from,
 {
 	const size_t count = plan->tile_count - from;
 	if (count > out_contrasts->capacity) {
-		float *grown = realloc(out_contrasts->of, count * sizeof *grown);
+		struct gz_node_contrast *grown = realloc(out_contrasts->of, count * sizeof *grown);
 		if (!grown)
 			return GZ_ERR_NO_MEM;
 		out_contrasts->of = grown;

@@ -14,7 +14,7 @@
 
 /** Contrasts of a round's tiles. Zero-initialised is empty; keep it from frame to frame. */
 struct gz_contrasts {
-	float *of; /**< by tile, from the first one measured; [0, 1] */
+	struct gz_node_contrast *of; /**< by tile, from the first one measured */
 	size_t capacity;
 };
 
@@ -25,12 +25,16 @@ struct gz_contrasts {
  * the point. For a grating whose half cycles are as wide as rays lie apart that is Michelson's
  * contrast, and for an edge half of it: about what an octave of the edge's frequencies has.
  *
+ * Colours are compared in the same way, in two opponent channels, red against green and blue
+ * against yellow, in relation to the same luminances; the greater of the two counts.
+ *
  * Luminance is relative to white and counts from that of a display in a dim room (1/200 of white).
  *
  * @param plan      a pyramid that refines
  * @param from      first tile to measure; all tiles before have been cast, too
  * @param lattices  where the plan's rays were stored
- * @param[out] out_contrasts  plan->tile_count - from of them
+ * @param[out] out_contrasts  plan->tile_count - from of them; undefined for tiles that
+ *                            gz_plan_refine() does not look at
  * @retval GZ_ERR_NO_MEM
  *
  * The same points give the same contrasts, for any number of threads.

@@ -36,8 +36,9 @@ const struct gz_option gz_foveation_options[] = {
 	  .help = "smallest cycle that the eye resolves at the gaze, degrees" },
 	{ "foveation.acuity_full_deg", GZ_OPTION_DOUBLE, AT(acuity_full_deg), 0, 180,
 	  .preset = "2.5", /* the fovea, docs/units.md */
-	  .help = "acuity, contrast: how far from the gaze every pixel may have a ray, even where "
-		  "pixels are finer than the eye resolves, degrees" },
+	  .help = "acuity, contrast: how far from the gaze every pixel has a ray, even where "
+		  "pixels "
+		  "are finer than the eye resolves, degrees" },
 	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
 	  .preset = "0.5",
 	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "
@@ -52,9 +53,9 @@ const struct gz_option gz_foveation_options[] = {
 	/* The preset is Geisler and Perry's 1/64. */
 	{ "foveation.contrast_threshold", GZ_OPTION_DOUBLE, AT(contrast_threshold), 0.0001, 1,
 	  .preset = "0.015625", .help = "contrast: least contrast that is seen at the gaze" },
-	{ "foveation.contrast_first", GZ_OPTION_DOUBLE, AT(contrast_first), 1, 8, .preset = "2",
-	  .help = "contrast: how far apart the first rays are, as a multiple of what the eye "
-		  "resolves" },
+	{ "foveation.contrast_first", GZ_OPTION_DOUBLE, AT(contrast_first), 1, 8, .preset = "4",
+	  .help = "contrast: how far apart the first rays are outside the fovea, as a multiple of "
+		  "what the eye resolves" },
 	{ "foveation.contrast_finest", GZ_OPTION_DOUBLE, AT(contrast_finest), 0.25, 1,
 	  .preset = "1",
 	  .help = "contrast: how near to each other rays may come at edges, as a multiple of what "

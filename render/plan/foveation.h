@@ -75,22 +75,22 @@ struct gz_foveation {
 	int filter;                /**< enum gz_filter; pyramids only, regions are bilinear */
 	double acuity_slope;       /**< m: degrees per cycle and degree of eccentricity */
 	double acuity_foveal_deg;  /**< omega0: degrees per cycle at the gaze */
-	double acuity_full_deg;    /**< acuity, contrast: every pixel may have a ray up to here */
+	double acuity_full_deg;    /**< acuity, contrast: every pixel has a ray up to here */
 	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
 	double edge_contrast;      /**< acuity: least contrast of an edge, (0, 1]; 1: none is one */
 	double edge_finest;        /**< acuity: spacing at edges, times what the eye resolves */
 	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */
-	double contrast_first;     /**< spacing of the first rays, times what the eye resolves */
-	double contrast_finest;    /**< finest spacing, times what the eye resolves, (0, 1] */
-	int contrast_rounds;       /**< most rounds of rays */
-	double mdc_square_px;      /**< edge of the fine square, px of the picture */
-	int mdc_spacing;           /**< outside the square */
-	double mdc3_square_px;     /**< edge of the square around which mdc3's third region lies */
-	int mdc3_spacing;          /**< in the third region */
-	double ddc_inner_px[2];    /**< semi-axes of the inner ellipse, px of the picture */
-	double ddc_middle_px[2];   /**< semi-axes of the middle ellipse */
-	int ddc_spacing[3];        /**< inner, middle, outer */
-	double blend_px;           /**< band at the borders of regions; 0 = a hard border */
+	double contrast_first; /**< spacing of the first rays beyond, times what the eye resolves */
+	double contrast_finest;  /**< finest spacing, times what the eye resolves, (0, 1] */
+	int contrast_rounds;     /**< most rounds of rays */
+	double mdc_square_px;    /**< edge of the fine square, px of the picture */
+	int mdc_spacing;         /**< outside the square */
+	double mdc3_square_px;   /**< edge of the square around which mdc3's third region lies */
+	int mdc3_spacing;        /**< in the third region */
+	double ddc_inner_px[2];  /**< semi-axes of the inner ellipse, px of the picture */
+	double ddc_middle_px[2]; /**< semi-axes of the middle ellipse */
+	int ddc_spacing[3];      /**< inner, middle, outer */
+	double blend_px;         /**< band at the borders of regions; 0 = a hard border */
 	int uniform_spacing;
 	double step_floor; /**< least sampling rate as a share of the full one, (0, 1] */
 	char table_file[GZ_PATH_SIZE]; /**< path of the user's table; empty: none */

@@ -142,6 +142,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 	[GZ_METHOD_CONTRAST] = {
 		.help = "acuity's rays only where neighbouring rays differ visibly",
 		.follows_gaze = true,
+		.sharp_at_gaze = true,
 		.can_be_coarser = true,
 		.refines = true,
 		.is_pyramid = true,

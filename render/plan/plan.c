@@ -126,7 +126,8 @@ enum gz_result gz_plan_update(const struct gz_plan_request *request, struct gz_p
 	return result;
 }
 
-enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from, const float *contrasts)
+enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from,
+			      const struct gz_node_contrast *contrasts)
 {
 	const struct gz_plan_request request = made_for(plan);
 	const size_t before = plan->tile_count;

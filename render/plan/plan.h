@@ -98,6 +98,18 @@ void gz_region_columns(const struct gz_region *region, int y, int width, int *ou
  */
 double gz_region_weight(const struct gz_region *region, double x, double y);
 
+/** Cells of a node along an axis: between its points and the first ones of the next node. */
+#define GZ_NODE_CELLS GZ_TILE_EDGE
+
+/** How much the rays of a node (gz_plan_node_of()) differ from their neighbours. */
+struct gz_node_contrast {
+	/** By row and column of the cells: the greatest contrast of luminance at a cell's corners,
+	 *  [0, 1]. */
+	float luminance[GZ_NODE_CELLS][GZ_NODE_CELLS];
+	/** The same of colour, in units of luminance's; 0 or more. */
+	float colour[GZ_NODE_CELLS][GZ_NODE_CELLS];
+};
+
 /** One lattice of a plan. */
 struct gz_plan_layer {
 	int spacing;       /**< px */
@@ -208,22 +220,23 @@ enum gz_result gz_plan_make(const struct gz_foveation *foveation, const struct g
 /**
  * Append a further round of tiles to a plan that refines: each block of the last round in which the
  * eye could see more than its rays show is cast again with all the rays that it needs. Its new
- * tiles take the place of the old ones, which stay in the list, marked as replaced. A block becomes
- * as fine as the contrast between its rays asks for (gz_plan_contrast_spacing_px()), but never
- * finer than the acuity of the eye times foveation.contrast_finest. A method with
- * gz_method.refines_edges takes foveation.edge_finest times the acuity of the eye where the
- * contrast is foveation.edge_contrast or more.
+ * tiles take the place of the old ones, which stay in the list, marked as replaced. Each part of a
+ * block becomes as fine as the contrast between its rays asks for (gz_plan_contrast_spacing_px()),
+ * but never finer than the acuity of the eye times foveation.contrast_finest. Of colour, half of
+ * luminance's frequencies are seen. A method with gz_method.refines_edges takes
+ * foveation.edge_finest times the acuity of the eye where the contrast of luminance is
+ * foveation.edge_contrast or more.
  *
  * @param from       first tile of the last round
- * @param contrasts  of each tile from there on: the greatest contrast between neighbouring rays of
- *                   the tile's block, [0, 1]. A quincunx tile whose y is not a multiple of its
- *                   pair's edge is ignored: the upper one speaks for both
+ * @param contrasts  of each tile from there on. Those of tiles of layer 0 and of tiles that are not
+ *                   their node's first (gz_plan_node_of()) are not read
  * @retval GZ_ERR_NO_MEM  out of memory for the tiles; those of the earlier rounds are intact
  *
  * Without a new tile the plan stays as it is. gz_plan_update() takes all further rounds back.
  * Threads: one at a time per plan.
  */
-enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from, const float *contrasts);
+enum gz_result gz_plan_refine(struct gz_plan *plan, size_t from,
+			      const struct gz_node_contrast *contrasts);
 
 /** Most rounds of a plan: 1 if it does not refine. */
 int gz_plan_rounds(const struct gz_plan *plan);

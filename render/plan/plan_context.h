@@ -23,6 +23,11 @@ enum gz_plan_round {
 	GZ_ROUND_FURTHER, /**< the contrast of a block is known */
 };
 
+/** How much the rays of a block differ: struct gz_node_contrast. */
+struct gz_plan_contrast {
+	double luminance, colour;
+};
+
 /** What a method needs to know about a frame. */
 struct gz_plan_context {
 	const struct gz_foveation *foveation;
@@ -45,7 +50,7 @@ struct gz_plan_context {
 	double steps_per_px;             /**< of the request */
 	double widen;                    /**< of the request */
 	enum gz_plan_round round;
-	double contrast;   /**< GZ_ROUND_FURTHER: of the block that is looked at */
+	struct gz_plan_contrast contrast; /**< GZ_ROUND_FURTHER: of the block that is looked at */
 	double uniform_px; /**< spacing of the uniform plan that widen leads to, once known */
 };
 
@@ -112,6 +117,6 @@ enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *p
 
 /** See gz_plan_refine(). Changes the context's contrast. */
 enum gz_result gz_plan_ladder_refine(struct gz_plan_context *context, struct gz_plan *plan,
-				     size_t from, const float *contrasts);
+				     size_t from, const struct gz_node_contrast *contrasts);
 
 #endif

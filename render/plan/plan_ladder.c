@@ -15,9 +15,35 @@ static double nearest_to(double place, int from, int edge)
 	return place < from ? from : place > from + edge ? from + edge : place;
 }
 
-/* The spacing that a block needs: that of its point nearest to the gaze. */
-static double block_spacing(const struct gz_plan_context *context, int x, int y, int edge)
+/* A node and how much its rays differ. */
+struct known_node {
+	int x, y, level;
+	const struct gz_node_contrast *contrast;
+};
+
+/* The greatest contrasts of a node's cells that a block of it covers or lies in. */
+static struct gz_plan_contrast contrast_of_block(const struct known_node *node, int x, int y,
+						 int edge)
 {
+	struct gz_plan_contrast most = { 0 };
+	const int from_x = (x - node->x) >> node->level, from_y = (y - node->y) >> node->level;
+	const int cells = edge >> node->level > 1 ? edge >> node->level : 1;
+	for (int row = from_y; row < from_y + cells; row++)
+		for (int column = from_x; column < from_x + cells; column++) {
+			const double luminance = (double)node->contrast->luminance[row][column];
+			const double colour = (double)node->contrast->colour[row][column];
+			most.luminance = luminance > most.luminance ? luminance : most.luminance;
+			most.colour = colour > most.colour ? colour : most.colour;
+		}
+	return most;
+}
+
+/* The spacing that a block needs: that of its point nearest to the gaze. */
+static double block_spacing(struct gz_plan_context *context, const struct known_node *node, int x,
+			    int y, int edge)
+{
+	if (node)
+		context->contrast = contrast_of_block(node, x, y, edge);
 	const double near_x = nearest_to(context->gaze_px[0], x, edge);
 	const double near_y = nearest_to(context->gaze_px[1], y, edge);
 	return gz_plan_spacing_at(context, near_x, near_y);
@@ -54,9 +80,10 @@ static void append_node(const struct gz_plan_context *context, struct gz_plan *p
 }
 
 /* A node becomes one square tile of its own level's lattice, or two quincunx tiles of the next
- * finer level, one above the other; or it is split. */
-static void subdivide(const struct gz_plan_context *context, struct gz_plan *plan, int x, int y,
-		      int level)
+ * finer level, one above the other; or it is split. known: the node of the last round that this one
+ * lies in; NULL in the first round. */
+static void subdivide(struct gz_plan_context *context, struct gz_plan *plan,
+		      const struct known_node *known, int x, int y, int level)
 {
 	const struct gz_plan_layer *coarsest = &plan->layers[LEVELS - 1];
 	const int edge = GZ_TILE_EDGE << level;
@@ -68,7 +95,7 @@ static void subdivide(const struct gz_plan_context *context, struct gz_plan *pla
 		return;
 	}
 	const int half = edge / 2;
-	const double spacing = block_spacing(context, x, y, edge);
+	const double spacing = block_spacing(context, known, x, y, edge);
 	if (spacing >= gz_ladder_px[2 * level]) {
 		append_node(context, plan, x, y, level, GZ_TILE_SQUARE);
 	} else if (spacing >= gz_ladder_px[2 * level - 1]) {
@@ -76,7 +103,7 @@ static void subdivide(const struct gz_plan_context *context, struct gz_plan *pla
 		append_node(context, plan, x, y + half, level - 1, GZ_TILE_QUINCUNX);
 	} else {
 		for (int quarter = 0; quarter < 4; quarter++)
-			subdivide(context, plan, x + (quarter & 1) * half,
+			subdivide(context, plan, known, x + (quarter & 1) * half,
 				  y + (quarter >> 1) * half, level - 1);
 	}
 }
@@ -141,7 +168,7 @@ enum gz_result gz_plan_ladder(struct gz_plan_context *context, struct gz_plan *p
 				gz_plan_reserve(plan, (size_t)1 << (2 * (LEVELS - 1)));
 			if (result != GZ_OK)
 				return result;
-			subdivide(context, plan, x, y, LEVELS - 1);
+			subdivide(context, plan, NULL, x, y, LEVELS - 1);
 		}
 	return GZ_OK;
 }
@@ -165,7 +192,7 @@ static void replace_node(struct gz_plan *plan, size_t first)
 }
 
 enum gz_result gz_plan_ladder_refine(struct gz_plan_context *context, struct gz_plan *plan,
-				     size_t from, const float *contrasts)
+				     size_t from, const struct gz_node_contrast *contrasts)
 {
 	const size_t to = plan->tile_count;
 	for (size_t i = from; i < to; i++) {
@@ -173,9 +200,9 @@ enum gz_result gz_plan_ladder_refine(struct gz_plan_context *context, struct gz_
 		int level;
 		if (tile.layer == 0 || !gz_plan_node_of(&tile, &level))
 			continue;
-		context->contrast = (double)contrasts[i - from];
+		const struct known_node node = { tile.x, tile.y, level, &contrasts[i - from] };
 		const double spacing =
-			block_spacing(context, tile.x, tile.y, GZ_TILE_EDGE << level);
+			block_spacing(context, &node, tile.x, tile.y, GZ_TILE_EDGE << level);
 		if (gz_ladder_rung(spacing) >= rung_of(tile.layer, tile.pattern))
 			continue;
 		/* room for a node that is split all the way down */
@@ -183,7 +210,7 @@ enum gz_result gz_plan_ladder_refine(struct gz_plan_context *context, struct gz_
 		if (result != GZ_OK)
 			return result;
 		replace_node(plan, i);
-		subdivide(context, plan, tile.x, tile.y, level);
+		subdivide(context, plan, &node, tile.x, tile.y, level);
 	}
 	return GZ_OK;
 }

@@ -175,11 +175,16 @@ static double eccentricity_at(const struct gz_plan_context *context, double x, d
 static double contrast_spacing(const struct gz_plan_context *context, double eccentricity_rad)
 {
 	static const double alpha = 0.106, e2_deg = 2.3;
-	const double seen = log(context->contrast / context->foveation->contrast_threshold);
+	/* Chosen: colours are seen up to a third of luminance's frequencies (Mullen, "The contrast
+	 * sensitivity of human colour vision", 1985), and half is careful. */
+	static const double colour_alpha = 2 * 0.106;
+	const double threshold = context->foveation->contrast_threshold;
+	const double seen = fmax(log(context->contrast.luminance / threshold) / alpha,
+				 log(context->contrast.colour / threshold) / colour_alpha);
 	if (!(seen > 0))
 		return INFINITY;
 	const double away = (eccentricity_rad * deg_per_rad + e2_deg) / e2_deg;
-	return alpha * away / (2 * seen) / deg_per_rad;
+	return away / (2 * seen) / deg_per_rad;
 }
 
 /* Spacing of further rays where the contrast is known; @p unit: of rad in px. */
@@ -188,7 +193,7 @@ static double further_spacing(const struct gz_plan_context *context, double spac
 {
 	const struct gz_foveation *foveation = context->foveation;
 	if (gz_method_of(foveation)->refines_edges)
-		return context->contrast >= foveation->edge_contrast
+		return context->contrast.luminance >= foveation->edge_contrast
 			       ? spacing * foveation->edge_finest
 			       : spacing;
 	return fmax(spacing * foveation->contrast_finest,
@@ -210,8 +215,12 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 		spacing = fmin(spacing, 1);
 	if (context->round == GZ_ROUND_FURTHER)
 		spacing = further_spacing(context, spacing, eccentricity, unit);
-	if (context->round == GZ_ROUND_FIRST && gz_method_of(context->foveation)->refines)
-		spacing = context->foveation->contrast_first * fmax(spacing, 1);
+	if (context->round == GZ_ROUND_FIRST && gz_method_of(context->foveation)->refines &&
+	    eccentricity >= context->full_rad) {
+		/* Where pixels are much coarser than the eye, every second one. */
+		const double first = context->foveation->contrast_first;
+		spacing = fmax(first * spacing, fmin(first, 2));
+	}
 	if (context->scale_all * context->scale_outside > 1)
 		spacing *= budget_scale_at(context, eccentricity);
 	return context->widen > 0 ? widened(context, spacing) : spacing;
@@ -245,7 +254,7 @@ double gz_plan_contrast_spacing_px(const struct gz_foveation *foveation,
 	const struct gz_plan_request request =
 		gz_plan_request_make(foveation, display, gaze, width, height);
 	set_geometry(&request, &context);
-	context.contrast = contrast;
+	context.contrast = (struct gz_plan_contrast) { .luminance = contrast };
 	double length_mm;
 	const double eccentricity = eccentricity_at(&context, pixel.x * (double)width - 0.5,
 						    pixel.y * (double)height - 0.5, &length_mm);
@@ -350,6 +359,8 @@ static int place_step(const struct gz_plan_context *context, double x, double y)
 {
 	double length_mm;
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
+	if (eccentricity < context->full_rad)
+		return 0;
 	const double spacing =
 		curve_at(&context->spacing, eccentricity) * length_mm * context->rays_per_mm;
 	return gz_ladder_rung(spacing * budget_scale_at(context, eccentricity));

@@ -87,13 +87,32 @@ static void check_refined(const struct gz_plan *plan, const struct gz_plan *fine
 	free(finest);
 }
 
-static void fill_contrasts(float *contrasts, size_t count, unsigned *seed)
+static float random_share(unsigned *seed)
+{
+	*seed = *seed * 1664525U + 1013904223U;
+	const float share = (float)(*seed >> 8) / (float)(1 << 24);
+	return share * share * share;
+}
+
+static void fill_contrasts(struct gz_node_contrast *contrasts, size_t count, unsigned *seed)
 {
 	for (size_t i = 0; i < count; i++) {
-		*seed = *seed * 1664525U + 1013904223U;
-		const float share = (float)(*seed >> 8) / (float)(1 << 24);
-		contrasts[i] = share * share * share;
+		const float most = random_share(seed);
+		for (int cell = 0; cell < GZ_NODE_CELLS * GZ_NODE_CELLS; cell++) {
+			const int row = cell / GZ_NODE_CELLS, column = cell % GZ_NODE_CELLS;
+			contrasts[i].luminance[row][column] = most * random_share(seed);
+			contrasts[i].colour[row][column] = most * random_share(seed);
+		}
 	}
+}
+
+/* The same contrast of luminance in all cells of a node, and no other. */
+static struct gz_node_contrast even_contrast(float luminance)
+{
+	struct gz_node_contrast contrast = { 0 };
+	for (int cell = 0; cell < GZ_NODE_CELLS * GZ_NODE_CELLS; cell++)
+		contrast.luminance[cell / GZ_NODE_CELLS][cell % GZ_NODE_CELLS] = luminance;
+	return contrast;
 }
 
 static void refined_plans_show_each_pixel_once_and_no_finer_than_allowed(void **state)
@@ -122,7 +141,8 @@ static void refined_plans_show_each_pixel_once_and_no_finer_than_allowed(void **
 			check_refined(&plan, &finest, before);
 			for (int round = 0, first = 0; round < 3; round++) {
 				const size_t count = plan.tile_count - (size_t)first;
-				float *contrasts = malloc((count + 1) * sizeof *contrasts);
+				struct gz_node_contrast *contrasts =
+					malloc((count + 1) * sizeof *contrasts);
 				fill_contrasts(contrasts, count, &seed);
 				assert_int_equal(gz_plan_refine(&plan, (size_t)first, contrasts),
 						 GZ_OK);
@@ -151,9 +171,9 @@ static void full_contrast_takes_the_finest_tiles(void **state)
 	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
 	const size_t first = plan.tile_count;
 	assert_true(plan.ray_count > 0);
-	float *contrasts = malloc(first * sizeof *contrasts);
+	struct gz_node_contrast *contrasts = malloc(first * sizeof *contrasts);
 	for (size_t i = 0; i < first; i++)
-		contrasts[i] = 1;
+		contrasts[i] = even_contrast(1);
 	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
 	const struct gz_foveation fine = finest_foveation(&foveation);
 	assert_int_equal(gz_plan_make(&fine, &display, gaze, 1280, 720, &finest), GZ_OK);
@@ -213,13 +233,13 @@ static void acuity_is_refined_at_edges_alone(void **state)
 	assert_int_equal(count, acuity.tile_count);
 	assert_memory_equal(plan.tiles, acuity.tiles, count * sizeof *plan.tiles);
 	double *before = shown_spacings(&plan);
-	float *contrasts = malloc(count * sizeof *contrasts);
+	struct gz_node_contrast *contrasts = malloc(count * sizeof *contrasts);
 	for (size_t i = 0; i < count; i++)
-		contrasts[i] = (float)foveation.edge_contrast - 0.01F;
+		contrasts[i] = even_contrast((float)foveation.edge_contrast - 0.01F);
 	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
 	assert_int_equal(plan.tile_count, count);
 	for (size_t i = 0; i < count; i++)
-		contrasts[i] = 1;
+		contrasts[i] = even_contrast(1);
 	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
 	struct gz_foveation fine = foveation;
 	fine.acuity_slope *= foveation.edge_finest;
@@ -262,11 +282,11 @@ static void a_plan_made_again_forgets_its_further_rounds(void **state)
 	const size_t tiles = plan.tile_count;
 	assert_true(gz_plan_same(&plan, &other));
 
-	float *contrasts = calloc(tiles, sizeof *contrasts);
+	struct gz_node_contrast *contrasts = calloc(tiles, sizeof *contrasts);
 	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
 	assert_int_equal(plan.tile_count, tiles);
 	assert_int_equal(plan.serial, serial);
-	contrasts[tiles / 2] = contrasts[tiles / 2 - 1] = 1;
+	contrasts[0] = contrasts[1] = even_contrast(1);
 	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
 	assert_true(plan.tile_count > tiles && plan.ray_count > rays);
 	assert_true(plan.serial > serial);
@@ -348,14 +368,19 @@ struct shown {
 
 enum { SHOWN_WIDTH = 640, SHOWN_HEIGHT = 360 };
 
-static uint32_t grey(double share)
+static uint32_t colour(double red, double green, double blue)
 {
-	const uint32_t level = (uint32_t)lround(255 * share);
-	return level | level << 8 | level << 16 | 0xFF000000U;
+	return (uint32_t)lround(255 * red) | (uint32_t)lround(255 * green) << 8 |
+	       (uint32_t)lround(255 * blue) << 16 | 0xFF000000U;
 }
 
-/* Grey value [0, 1] of a pixel; the curve of a display is a square. */
-typedef double picture_function(int x, int y);
+static uint32_t grey(double share)
+{
+	return colour(share, share, share);
+}
+
+/* Colour of a pixel; the curve of a display is a square. */
+typedef uint32_t picture_function(int x, int y);
 
 static struct shown show(picture_function *picture, int threads)
 {
@@ -373,9 +398,9 @@ static struct shown show(picture_function *picture, int threads)
 		const int spacing = shown.plan.layers[tile->layer].spacing;
 		uint32_t pixels[GZ_TILE_EDGE * GZ_TILE_EDGE];
 		for (int ray = 0; ray < GZ_TILE_EDGE * GZ_TILE_EDGE; ray++)
-			pixels[ray] = grey(
+			pixels[ray] =
 				picture(tile->x + gz_tile_columns[tile->pattern][ray] * spacing,
-					tile->y + gz_tile_rows[ray] * spacing));
+					tile->y + gz_tile_rows[ray] * spacing);
 		gz_lattices_store(&shown.lattices, &shown.plan, tile,
 				  gz_plan_tile_active(&shown.plan, tile), pixels);
 	}
@@ -395,38 +420,76 @@ static void shown_free(struct shown *shown)
 	free(shown->picture);
 }
 
-static double flat(int x, int y)
+static uint32_t flat(int x, int y)
 {
 	(void)x;
 	(void)y;
-	return 0.7;
+	return grey(0.7);
 }
 
-static double slope(int x, int y)
+static uint32_t slope(int x, int y)
 {
 	(void)y;
-	return sqrt(0.2 + 0.6 * x / 1000.0);
+	return grey(sqrt(0.2 + 0.6 * x / 1000.0));
 }
 
 enum { EDGE_X = 301 };
 
 /* Luminances .6 and .4: half of Michelson's contrast is .1. */
-static double edge(int x, int y)
+static uint32_t edge(int x, int y)
 {
 	(void)y;
-	return sqrt(x < EDGE_X ? 0.4 : 0.6);
+	return grey(sqrt(x < EDGE_X ? 0.4 : 0.6));
 }
 
+/* Red and green, then blue and a dark yellow, of nearly one luminance. */
+static uint32_t red_green_edge(int x, int y)
+{
+	(void)y;
+	return x < EDGE_X ? colour(1, 0, 0) : colour(0, sqrt(0.2126 / 0.7152), 0);
+}
+
+static uint32_t blue_yellow_edge(int x, int y)
+{
+	(void)y;
+	const double yellow = sqrt(0.0722 / (0.2126 + 0.7152));
+	return x < EDGE_X ? colour(0, 0, 1) : colour(yellow, yellow, 0);
+}
+
+/* Whether a tile's contrast is measured: it is its node's first and may be replaced. */
+static bool is_measured(const struct gz_tile *tile, int *out_level)
+{
+	return gz_plan_node_of(tile, out_level) && tile->layer > 0;
+}
+
+static float greatest(const float cells[GZ_NODE_CELLS][GZ_NODE_CELLS])
+{
+	float most = 0;
+	for (int cell = 0; cell < GZ_NODE_CELLS * GZ_NODE_CELLS; cell++)
+		most = fmaxf(most, cells[cell / GZ_NODE_CELLS][cell % GZ_NODE_CELLS]);
+	return most;
+}
+
+/* At the picture's rim, where the slope ends, .6 / 1000 of white a pixel and 32 px between rays are
+ * a contrast of .024. */
 static void what_is_flat_or_rises_evenly_has_no_contrast(void **state)
 {
 	(void)state;
 	static picture_function *const pictures[] = { flat, slope };
 	for (int p = 0; p < 2; p++) {
 		struct shown shown = show(pictures[p], 2);
-		for (size_t i = 0; i < shown.plan.tile_count; i++)
-			if (shown.contrasts.of[i] > (p == 0 ? 0 : 0.012F))
-				fail_msg("picture %d, tile at %d %d: %g", p, shown.plan.tiles[i].x,
-					 shown.plan.tiles[i].y, (double)shown.contrasts.of[i]);
+		for (size_t i = 0; i < shown.plan.tile_count; i++) {
+			const struct gz_node_contrast *contrast = &shown.contrasts.of[i];
+			int level;
+			if (!is_measured(&shown.plan.tiles[i], &level))
+				continue;
+			if (greatest(contrast->luminance) > (p == 0 ? 0 : 0.025F) ||
+			    greatest(contrast->colour) > 0.001F)
+				fail_msg("picture %d, tile at %d %d: %g, colour %g", p,
+					 shown.plan.tiles[i].x, shown.plan.tiles[i].y,
+					 (double)greatest(contrast->luminance),
+					 (double)greatest(contrast->colour));
+		}
 		shown_free(&shown);
 	}
 }
@@ -440,16 +503,16 @@ static void an_edge_is_found_by_every_tile_that_it_crosses(void **state)
 	for (size_t i = 0; i < shown.plan.tile_count; i++) {
 		const struct gz_tile *tile = &shown.plan.tiles[i];
 		int level;
-		if (tile->y >= SHOWN_HEIGHT || !gz_plan_node_of(tile, &level))
+		if (tile->y >= SHOWN_HEIGHT || !is_measured(tile, &level))
 			continue;
-		const int across = GZ_TILE_EDGE << level;
-		const float contrast = shown.contrasts.of[i];
+		const int across = GZ_TILE_EDGE << level, beside = 4 << level;
+		const float contrast = greatest(shown.contrasts.of[i].luminance);
 		if (tile->x < EDGE_X && EDGE_X <= tile->x + across) {
 			crossed++;
 			patterns[tile->pattern]++;
 			if (!(contrast > 0.08F && contrast < 0.115F))
 				fail_msg("tile at %d %d: %g", tile->x, tile->y, (double)contrast);
-		} else if (tile->x > EDGE_X + 64 || tile->x + across < EDGE_X - 64) {
+		} else if (tile->x > EDGE_X + beside || tile->x + across < EDGE_X - beside) {
 			if (contrast > 0.001F)
 				fail_msg("tile at %d %d, beside the edge: %g", tile->x, tile->y,
 					 (double)contrast);
@@ -457,6 +520,124 @@ static void an_edge_is_found_by_every_tile_that_it_crosses(void **state)
 	}
 	assert_true(crossed > 10 && patterns[GZ_TILE_SQUARE] > 0 && patterns[GZ_TILE_QUINCUNX] > 0);
 	shown_free(&shown);
+}
+
+/* Only the cells beside it: the rest of the node may stay coarse. */
+static void an_edge_is_found_by_the_cells_that_it_crosses(void **state)
+{
+	(void)state;
+	struct shown shown = show(edge, 1);
+	int crossed = 0, beside = 0;
+	for (size_t i = 0; i < shown.plan.tile_count; i++) {
+		const struct gz_tile *tile = &shown.plan.tiles[i];
+		int level;
+		if (tile->y >= SHOWN_HEIGHT || !is_measured(tile, &level))
+			continue;
+		for (int column = 0; column < GZ_NODE_CELLS; column++) {
+			const int from = tile->x + (column << level), to = from + (1 << level);
+			const float contrast = shown.contrasts.of[i].luminance[1][column];
+			if (from < EDGE_X && EDGE_X <= to) {
+				crossed++;
+				assert_true(contrast > 0.08F);
+			} else if (tile->x < EDGE_X &&
+				   EDGE_X <= tile->x + (GZ_TILE_EDGE << level) &&
+				   (from > EDGE_X + (2 << level) || to < EDGE_X - (2 << level))) {
+				beside++;
+				assert_true(contrast < 0.001F);
+			}
+		}
+	}
+	assert_true(crossed > 10 && beside > 10);
+	shown_free(&shown);
+}
+
+/* Luminance alone did not tell them apart. */
+static void edges_between_colours_of_one_luminance_are_found(void **state)
+{
+	(void)state;
+	static picture_function *const pictures[] = { red_green_edge, blue_yellow_edge };
+	for (int p = 0; p < 2; p++) {
+		struct shown shown = show(pictures[p], 2);
+		int crossed = 0;
+		for (size_t i = 0; i < shown.plan.tile_count; i++) {
+			const struct gz_tile *tile = &shown.plan.tiles[i];
+			int level;
+			if (tile->y >= SHOWN_HEIGHT || !is_measured(tile, &level))
+				continue;
+			if (!(tile->x < EDGE_X && EDGE_X <= tile->x + (GZ_TILE_EDGE << level)))
+				continue;
+			const struct gz_node_contrast *contrast = &shown.contrasts.of[i];
+			crossed++;
+			if (greatest(contrast->luminance) > 0.01F ||
+			    greatest(contrast->colour) < 0.1F)
+				fail_msg("picture %d, tile at %d %d: luminance %g, colour %g", p,
+					 tile->x, tile->y, (double)greatest(contrast->luminance),
+					 (double)greatest(contrast->colour));
+		}
+		assert_true(crossed > 10);
+		shown_free(&shown);
+	}
+}
+
+/* Rays of a plan all of whose nodes have one contrast. */
+static uint64_t rays_for(const struct gz_node_contrast *contrast)
+{
+	const struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(1280, 720);
+	const struct gz_plan_request request =
+		request_for(&foveation, &display, (struct gz_point) { 0.5F, 0.5F });
+	struct gz_plan plan = { 0 };
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	struct gz_node_contrast *contrasts = malloc(plan.tile_count * sizeof *contrasts);
+	for (size_t i = 0; i < plan.tile_count; i++)
+		contrasts[i] = *contrast;
+	assert_int_equal(gz_plan_refine(&plan, 0, contrasts), GZ_OK);
+	const uint64_t rays = plan.ray_count;
+	free(contrasts);
+	gz_plan_free(&plan);
+	return rays;
+}
+
+static void a_cell_with_contrast_leaves_the_rest_of_its_node_coarser(void **state)
+{
+	(void)state;
+	struct gz_node_contrast all = even_contrast(0.5F), one = even_contrast(0);
+	const struct gz_node_contrast none = even_contrast(0);
+	one.luminance[1][2] = 0.5F;
+	assert_true(rays_for(&none) < rays_for(&one));
+	assert_true(rays_for(&one) * 2 < rays_for(&all));
+	/* seen less than luminance of the same contrast, but seen */
+	struct gz_node_contrast coloured = none;
+	memcpy(coloured.colour, all.luminance, sizeof coloured.colour);
+	assert_true(rays_for(&none) < rays_for(&coloured));
+	assert_true(rays_for(&coloured) < rays_for(&all));
+}
+
+/* What is thinner than the first rays are apart must not be missed where it is looked at. At this
+ * size acuity alone would begin to leave pixels out at 1.6 degrees. */
+static void each_pixel_of_the_fovea_has_a_ray_at_once(void **state)
+{
+	(void)state;
+	enum { WIDTH = 3840, HEIGHT = 2160 };
+	const struct gz_foveation foveation = contrast_foveation();
+	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
+	const struct gz_point gaze = { 0.4F, 0.6F };
+	const struct gz_plan_request request = request_for(&foveation, &display, gaze);
+	struct gz_plan plan = { 0 };
+	assert_int_equal(gz_plan_update(&request, &plan), GZ_OK);
+	int foveal = 0;
+	for (size_t i = 0; i < plan.tile_count; i++) {
+		const struct gz_tile *tile = &plan.tiles[i];
+		const struct gz_point at = { ((float)tile->x + 0.5F) / WIDTH,
+					     ((float)tile->y + 0.5F) / HEIGHT };
+		if (gz_display_angle_deg(&display, gaze, at) > 2.49)
+			continue;
+		foveal++;
+		assert_int_equal(tile->layer, 0);
+		assert_true(plan.steps[tile->step] == 1);
+	}
+	assert_true(foveal > 1000);
+	gz_plan_free(&plan);
 }
 
 /* Rays of a frame by a method, which is drawn twice by one plan, with another frame between. */
@@ -544,6 +725,10 @@ TEST_SUITE(contrast)
 		cmocka_unit_test(a_contrast_is_shown_as_finely_as_it_is_seen),
 		cmocka_unit_test(what_is_flat_or_rises_evenly_has_no_contrast),
 		cmocka_unit_test(an_edge_is_found_by_every_tile_that_it_crosses),
+		cmocka_unit_test(an_edge_is_found_by_the_cells_that_it_crosses),
+		cmocka_unit_test(edges_between_colours_of_one_luminance_are_found),
+		cmocka_unit_test(a_cell_with_contrast_leaves_the_rest_of_its_node_coarser),
+		cmocka_unit_test(each_pixel_of_the_fovea_has_a_ray_at_once),
 		cmocka_unit_test(a_flat_picture_takes_the_first_rays_alone),
 		cmocka_unit_test(rays_go_where_there_is_contrast),
 	};

@@ -72,6 +72,8 @@ static bool must_be_equal(const struct small_scene *scene, const struct gz_displ
 		return hypot(dx / f->ddc_inner_px[0], dy / f->ddc_inner_px[1]) < 1;
 	case GZ_METHOD_ACUITY:
 		return gz_acuity_spacing_px(f, display, scene->gaze, at, width, height) < M_SQRT2;
+	case GZ_METHOD_CONTRAST: /* floats know the angle to a hundredth */
+		return gz_display_angle_deg(display, scene->gaze, at) < f->acuity_full_deg - 0.01;
 	case GZ_METHOD_TABLE: /* the small scene's table begins with .01 to .05 degrees and step 1
 			       */
 		return gz_display_angle_deg(display, scene->gaze, at) < 3;
