@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/plan/method.h"
+
 enum {
 	TILES_A_PART = 64,
 	RIM = 1,
@@ -29,6 +31,8 @@ struct measure_job {
 	const struct gz_plan *plan;
 	const struct gz_lattices *lattices;
 	size_t from;
+	int channels; /* that are compared */
+	float least;  /* contrasts below may be taken for 0 */
 	struct gz_node_contrast *contrasts;
 };
 
@@ -101,7 +105,7 @@ static struct opponent colour_at(const struct gz_lattices *lattices, int level, 
 static bool is_plain(const struct gz_lattices *lattices, int level, int column, int row)
 {
 	const struct gz_lattice *lattice = &lattices->layers[level];
-	const int right = column + WINDOW - 1, bottom = row + WINDOW - 1;
+	const int right = column + ROW - 1, bottom = row + WINDOW - 1;
 	if (column < 0 || row < 0 || right >= lattice->columns || bottom >= lattice->rows)
 		return false;
 	/* Nodes are as wide as the window's middle, or finer. */
@@ -116,22 +120,39 @@ static bool is_plain(const struct gz_lattices *lattices, int level, int column, 
 	       level_at(lattices, level, right, bottom) <= level;
 }
 
-static void fill_window(const struct gz_lattices *lattices, int level, int column, int row,
-			struct window *window)
+/* Whole rows, so that loops become vectors; the last column is a neighbour's neighbour. */
+static inline void fill_plain(const uint32_t *points, size_t stride, int channels,
+			      struct window *window)
 {
-	const struct gz_lattice *lattice = &lattices->layers[level];
-	const bool plain = is_plain(lattices, level, column, row);
-	for (int y = 0; y < WINDOW; y++) {
-		const uint32_t *points = lattice->points +
-					 (ptrdiff_t)(row + y) * (ptrdiff_t)lattice->stride + column;
-		for (int x = 0; x < WINDOW; x++) {
-			const struct opponent colour =
-				plain ? opponent_of(points[x])
-				      : colour_at(lattices, level, column + x, row + y);
-			for (int i = 0; i < CHANNELS; i++)
+	for (int y = 0; y < WINDOW; y++, points += stride)
+		for (int x = 0; x < ROW; x++) {
+			const struct opponent colour = opponent_of(points[x]);
+			for (int i = 0; i < channels; i++)
 				window->at[i][y][x] = colour.of[i];
 		}
+}
+
+static inline void fill_window(const struct gz_lattices *lattices, int level, int column, int row,
+			       int channels, struct window *window)
+{
+	const struct gz_lattice *lattice = &lattices->layers[level];
+	if (is_plain(lattices, level, column, row)) {
+		fill_plain(lattice->points + (size_t)row * lattice->stride + (size_t)column,
+			   lattice->stride, channels, window);
+		return;
 	}
+	for (int y = 0; y < WINDOW; y++)
+		for (int x = 0; x < ROW; x++) {
+			const struct opponent colour =
+				colour_at(lattices, level, column + x, row + y);
+			for (int i = 0; i < channels; i++)
+				window->at[i][y][x] = colour.of[i];
+		}
+}
+
+static inline float greater(float a, float b)
+{
+	return a > b ? a : b;
 }
 
 /* Contrast of a point with the mean of two neighbours on opposite sides. */
@@ -156,11 +177,6 @@ static void channel_contrasts(const struct window *window, int channel,
 		}
 }
 
-static inline float greater(float a, float b)
-{
-	return a > b ? a : b;
-}
-
 /* Raise the contrasts of a node's cells to those of their corners. */
 static void raise_cells(float cells[GZ_NODE_CELLS][GZ_NODE_CELLS],
 			const float contrasts[POINTS][ROW])
@@ -174,13 +190,37 @@ static void raise_cells(float cells[GZ_NODE_CELLS][GZ_NODE_CELLS],
 		}
 }
 
-static void measure_window(const struct window *window, struct gz_node_contrast *out_contrast)
+/* Whether no contrast of luminance in the window can reach @p least: none is greater than that of
+ * the brightest point with the darkest. */
+static bool is_even(const struct window *window, float least)
+{
+	float low[ROW], high[ROW];
+	memcpy(low, window->at[LUMINANCE][0], sizeof low);
+	memcpy(high, low, sizeof high);
+	for (int y = 1; y < WINDOW; y++)
+		for (int x = 0; x < ROW; x++) {
+			const float light = window->at[LUMINANCE][y][x];
+			low[x] = light < low[x] ? light : low[x];
+			high[x] = light > high[x] ? light : high[x];
+		}
+	float darkest = low[0], brightest = high[0];
+	for (int x = 1; x < ROW; x++) {
+		darkest = low[x] < darkest ? low[x] : darkest;
+		brightest = greater(brightest, high[x]);
+	}
+	return brightest - darkest < least * (brightest + darkest);
+}
+
+static void measure_window(const struct window *window, int channels, float least,
+			   struct gz_node_contrast *out_contrast)
 {
 	float contrasts[POINTS][ROW];
 	*out_contrast = (struct gz_node_contrast) { 0 };
+	if (channels == 1 && is_even(window, least))
+		return;
 	channel_contrasts(window, LUMINANCE, contrasts);
 	raise_cells(out_contrast->luminance, contrasts);
-	for (int i = LUMINANCE + 1; i < CHANNELS; i++) {
+	for (int i = LUMINANCE + 1; i < channels; i++) {
 		channel_contrasts(window, i, contrasts);
 		raise_cells(out_contrast->colour, contrasts);
 	}
@@ -201,7 +241,8 @@ static float diagonal_contrast(const struct window *window, int channel, int x, 
 
 /* The points that quincunx tiles add lie in the middle of the node's cells. */
 static void add_quincunx(const struct measure_job *job, const struct gz_tile *tile,
-			 const struct window *window, struct gz_node_contrast *contrast)
+			 const struct window *window, int channels,
+			 struct gz_node_contrast *contrast)
 {
 	const struct gz_lattice *lattice = &job->lattices->layers[tile->layer];
 	const int column = tile->x / lattice->spacing, row = tile->y / lattice->spacing;
@@ -215,24 +256,36 @@ static void add_quincunx(const struct measure_job *job, const struct gz_tile *ti
 			float *colour = &contrast->colour[y][x];
 			*luminance = greater(*luminance,
 					     diagonal_contrast(window, LUMINANCE, x, y, &middle));
-			for (int i = LUMINANCE + 1; i < CHANNELS; i++)
+			for (int i = LUMINANCE + 1; i < channels; i++)
 				*colour = greater(*colour,
 						  diagonal_contrast(window, i, x, y, &middle));
 		}
+}
+
+/* Always inline, so that nothing is computed of channels that are not compared. */
+static inline __attribute__((always_inline)) void measure_channels(const struct measure_job *job,
+								   const struct gz_tile *tile,
+								   int level, int channels,
+								   struct gz_node_contrast *out)
+{
+	struct window window;
+	fill_window(job->lattices, level, (tile->x >> level) - RIM, (tile->y >> level) - RIM,
+		    channels, &window);
+	measure_window(&window, channels, job->least, out);
+	if (tile->pattern == GZ_TILE_QUINCUNX)
+		add_quincunx(job, tile, &window, channels, out);
 }
 
 static void measure_tile(const struct measure_job *job, const struct gz_tile *tile,
 			 struct gz_node_contrast *out_contrast)
 {
 	int level;
-	struct window window;
 	if (!gz_plan_node_of(tile, &level) || tile->layer == 0)
 		return;
-	fill_window(job->lattices, level, (tile->x >> level) - RIM, (tile->y >> level) - RIM,
-		    &window);
-	measure_window(&window, out_contrast);
-	if (tile->pattern == GZ_TILE_QUINCUNX)
-		add_quincunx(job, tile, &window, out_contrast);
+	if (job->channels == 1)
+		measure_channels(job, tile, level, 1, out_contrast);
+	else
+		measure_channels(job, tile, level, CHANNELS, out_contrast);
 }
 
 static void measure_part(void *user, size_t part, int worker)
@@ -249,6 +302,8 @@ enum gz_result gz_contrasts_measure(const struct gz_plan *plan, size_t from,
 				    struct gz_contrasts *out_contrasts)
 {
 	const size_t count = plan->tile_count - from;
+	const struct gz_foveation *foveation = &plan->made_for.foveation;
+	const bool edges = gz_method_of(foveation)->refines_edges;
 	if (count > out_contrasts->capacity) {
 		struct gz_node_contrast *grown = realloc(out_contrasts->of, count * sizeof *grown);
 		if (!grown)
@@ -260,6 +315,8 @@ enum gz_result gz_contrasts_measure(const struct gz_plan *plan, size_t from,
 		.plan = plan,
 		.lattices = lattices,
 		.from = from,
+		.channels = edges ? 1 : CHANNELS,
+		.least = edges ? (float)foveation->edge_contrast : 0,
 		.contrasts = out_contrasts->of,
 	};
 	gz_workers_run(workers, measure_part, &job, (count + TILES_A_PART - 1) / TILES_A_PART);

@@ -28,6 +28,9 @@ struct gz_contrasts {
  * Colours are compared in the same way, in two opponent channels, red against green and blue
  * against yellow, in relation to the same luminances; the greater of the two counts.
  *
+ * A method that refines edges alone (gz_method.refines_edges) needs no colours, which are 0 then,
+ * nor contrasts below foveation.edge_contrast, which may be 0.
+ *
  * Luminance is relative to white and counts from that of a display in a dim room (1/200 of white).
  *
  * @param plan      a pyramid that refines
