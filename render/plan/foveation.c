@@ -40,11 +40,11 @@ const struct gz_option gz_foveation_options[] = {
 		  "pixels "
 		  "are finer than the eye resolves, degrees" },
 	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
-	  .preset = "0.5",
+	  .preset = "0.4",
 	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "
 		  "eightfold" },
 	/* Chosen by docs/results.md: outlines before an empty background, little else. */
-	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "0.9",
+	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "0.7",
 	  .help = "acuity: rays that differ by this contrast or more from their neighbours are at "
 		  "an edge, which gets finer rays; 1 = no edge does" },
 	{ "foveation.edge_finest", GZ_OPTION_DOUBLE, AT(edge_finest), 0.25, 1, .preset = "0.5",
