@@ -210,7 +210,7 @@ static void print_largest(const struct set *set)
 	double all = 0, largest = 0;
 	for (size_t t = 0; t < set->count; t++)
 		room += set->track[t].count;
-	double *squares = malloc(room * sizeof *squares);
+	double *squares = malloc((room + 1) * sizeof *squares);
 	if (!squares)
 		exit(1);
 	const size_t count = collect_squares(set, squares), large = count / LARGE_OF;

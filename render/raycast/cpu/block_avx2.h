@@ -196,21 +196,22 @@ SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t ro
 			   struct near_blocks *near)
 {
 	from -= type == GZ_VOXEL_U8 ? 1 : 2;
-	for (int z = -1; z <= BLOCK_EDGE; z++) {
-		__m128i low[3], high[3];
-		const int outer = z < 0 || z == BLOCK_EDGE;
-		const char *rows = from + z * slice - (outer ? 0 : row);
-		for (int i = 0; i < (outer ? 2 : 3); i++)
+	__m128i low[3], high[3];
+	for (int z = 0; z < BLOCK_EDGE; z++) {
+		const char *rows = from + z * slice - row;
+		for (int i = 0; i < 3; i++)
 			near_rows(type, rows + 2 * i * row, row, &low[i], &high[i]);
-		if (outer) {
-			near->low.z[z + 1] = near_middle(low[0], low[1]);
-			if (type != GZ_VOXEL_U8)
-				near->high.z[z + 1] = near_middle(high[0], high[1]);
-		} else {
-			near_slice(low, z, &near->low);
-			if (type != GZ_VOXEL_U8)
-				near_slice(high, z, &near->high);
-		}
+		near_slice(low, z, &near->low);
+		if (type != GZ_VOXEL_U8)
+			near_slice(high, z, &near->high);
+	}
+	for (int side = 0; side < 2; side++) {
+		const int z = side == 0 ? -1 : BLOCK_EDGE;
+		for (int i = 0; i < 2; i++)
+			near_rows(type, from + z * slice + 2 * i * row, row, &low[i], &high[i]);
+		near->low.z[z + 1] = near_middle(low[0], low[1]);
+		if (type != GZ_VOXEL_U8)
+			near->high.z[z + 1] = near_middle(high[0], high[1]);
 	}
 }
 

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define SIMD_LANES   8
+#define SIMD_LANES 8
 /* registers hold a block of voxels: cast_block.h */
 #define SIMD_BLOCKS "render/raycast/cpu/block_avx2.h"
 

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define SIMD_LANES   16
+#define SIMD_LANES 16
 /* registers hold a block of voxels: cast_block.h */
 #define SIMD_BLOCKS "render/raycast/cpu/block_avx512.h"
 

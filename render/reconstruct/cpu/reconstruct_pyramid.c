@@ -457,6 +457,7 @@ static void fill_finest_run(struct square *square, const struct range *run, uint
 	for (int y = run->y0; y < run->y1; y++)
 		for (int x = run->x0 + (y % 2 == 0); x < run->x1; x += 2)
 			picture[(ptrdiff_t)y * patch->columns + x] = *point_at(patch, x, y);
+	patch->first = NULL;
 }
 
 void gz_reconstruct_finest(const struct gz_plan *plan, const struct gz_reconstructed *plane,
