@@ -269,7 +269,10 @@ class Page:
         @return whether all of it is at hand
         """
         made = words[-1] if words[1:2] == ["convert"] else option_after(words, "--out")
-        for name in (word.split("/")[0] for word in words if word != made):
+        for word in words:
+            if word == made:
+                continue
+            name = word.split("/")[0].replace("%04d", "0001")
             path = os.path.join(self.folder, name)
             if name in SAMPLES and not os.path.exists(path):
                 if name.endswith(".scene"):
