@@ -442,14 +442,11 @@ static void copy_cast_pixels(const struct patch *patch, const uint32_t *picture,
 			row[x >= 0 && x < patch->columns ? x : mirrored(x, patch->columns)];
 }
 
-/* Fill a run of quincunx tiles of spacing 1 in a scratch buffer, and write what they lack. */
+/* Fill a run of quincunx tiles of spacing 1 in the square's buffer, and write what they lack. */
 static void fill_finest_run(struct square *square, const struct range *run, uint32_t *picture)
 {
-	uint32_t memory[(GZ_BLOCK_EDGE + 2 * REACH + 1) * PATCH_STRIDE];
 	struct patch *patch = &square->patches[0];
 	patch->all = *run;
-	patch->stride = PATCH_STRIDE;
-	patch->first = memory + (ptrdiff_t)REACH * PATCH_STRIDE + LEFT;
 	for (int y = run->y0 - REACH; y < run->y1 + REACH; y++)
 		copy_cast_pixels(patch, picture, run->x0 - REACH, run->x1 + REACH, y);
 	for (int y = run->y0; y < run->y1; y += 2)
@@ -457,7 +454,6 @@ static void fill_finest_run(struct square *square, const struct range *run, uint
 	for (int y = run->y0; y < run->y1; y++)
 		for (int x = run->x0 + (y % 2 == 0); x < run->x1; x += 2)
 			picture[(ptrdiff_t)y * patch->columns + x] = *point_at(patch, x, y);
-	patch->first = NULL;
 }
 
 void gz_reconstruct_finest(const struct gz_plan *plan, const struct gz_reconstructed *plane,
@@ -466,9 +462,12 @@ void gz_reconstruct_finest(const struct gz_plan *plan, const struct gz_reconstru
 	const struct gz_lattices *lattices = plane->lattices;
 	const uint8_t *marks = lattices->blocks + (ptrdiff_t)block_row * lattices->block_columns;
 	const uint8_t *end = marks + (plan->width + GZ_BLOCK_EDGE - 1) / GZ_BLOCK_EDGE;
+	uint32_t memory[(GZ_BLOCK_EDGE + 2 * REACH + 1) * PATCH_STRIDE];
 	struct square square = { .plan = plan, .lattices = lattices, .filters = plane->filters };
 	square.patches[0].columns = plan->width;
 	square.patches[0].rows = plan->height;
+	square.patches[0].stride = PATCH_STRIDE;
+	square.patches[0].first = memory + (ptrdiff_t)REACH * PATCH_STRIDE + LEFT;
 	struct range run = { .y0 = block_row * GZ_BLOCK_EDGE };
 	run.y1 = gz_least(run.y0 + GZ_BLOCK_EDGE, plan->height);
 	for (const uint8_t *at = marks;
