@@ -269,10 +269,8 @@ class Page:
         @return whether all of it is at hand
         """
         made = words[-1] if words[1:2] == ["convert"] else option_after(words, "--out")
-        for word in words:
-            if word == made:
-                continue
-            name = word.split("/")[0].replace("%04d", "0001")
+        names = (word.split("/")[0].replace("%04d", "0001") for word in words if word != made)
+        for name in names:
             path = os.path.join(self.folder, name)
             if name in SAMPLES and not os.path.exists(path):
                 if name.endswith(".scene"):
