@@ -232,18 +232,18 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 	struct view view[TILE_PARTS];
 	struct light light[TILE_PARTS];
 	struct near_voxels near;
-	struct unlit unlit[TILE_PARTS];
+	struct unlit unlit;
 	const struct march march = {
-		cast, reading, tile->step, rich, coloured, rays, &near, unlit
+		cast, reading, tile->step, rich, coloured, rays, &near, &unlit
 	};
 	int hit = 0;
+	unlit.count = 0;
 	if (rich)
 		near_nothing(&near);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		set_up_rays(cast, tile, part * SIMD_LANES, &rays[part]);
 		light[part] =
 			(struct light) { vf_set(0), vf_set(0), vf_set(0), vf_set(1), vf_set(0) };
-		unlit[part].count = 0;
 		hit |= vm_any(rays[part].hit);
 		if (rich && cast->light.on && vm_any(rays[part].hit)) {
 			set_up_view(cast, tile->step, &rays[part], &view[part]);
@@ -254,10 +254,9 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 		samples = rich && cast->preintegrated_extinction
 				  ? cast_tile_by_segments(&march, light)
 				  : cast_by_samples(&march, light);
+	settle_unlit(&march);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		const int first = part * SIMD_LANES;
-		const struct march one = march_of_part(&march, part);
-		settle_unlit(&one, &light[part]);
 		vi_store(out_pixels + first,
 			 end_rays(cast, tile, first, &rays[part], rich, &light[part]));
 	}

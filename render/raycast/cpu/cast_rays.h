@@ -61,13 +61,13 @@ struct march {
 	const struct rays *rays; /* of one register, or the first of several */
 	/* with light: */
 	struct near_voxels *near; /* of the tile: cast_near.h */
-	struct unlit *unlit;      /* for each register: cast_shade.h */
+	struct unlit *unlit;      /* of the tile: cast_shade.h */
 };
 
 /* The march of the rays of one register of several. */
 #define march_of_part(m, part)                                                          \
 	((struct march) { (m)->cast, (m)->reading, (m)->step, (m)->rich, (m)->coloured, \
-			  (m)->rays + (part), (m)->near, (m)->unlit + (part) })
+			  (m)->rays + (part), (m)->near, (m)->unlit })
 
 /* Steps from the origin to where the rays enter the whole box, and to where they enter and leave
  * the shown part of it. */

@@ -456,8 +456,9 @@ SIMD void light_surfaces(const struct gz_cast *cast, const struct view *view, co
 	}
 }
 
-/* Samples whose colours are still to be lit and added. Several are lit at once, because each takes
- * a long row of steps that wait for each other, and so do not wait for those of the others. */
+/* Samples of a tile whose colours are still to be lit and added, in the order in which they were
+ * taken. Several are lit at once, because each takes a long row of steps that wait for each other,
+ * and so do not wait for those of the others. */
 enum { LIT_AT_ONCE = 4 };
 
 struct unlit_sample {
@@ -465,6 +466,8 @@ struct unlit_sample {
 	vm mask;
 	struct colour colour;
 	vf weight; /* share of the light that it adds */
+	const struct rays *rays;
+	struct light *light; /* of its rays, which it is added to */
 };
 
 struct unlit {
@@ -473,15 +476,16 @@ struct unlit {
 };
 
 /* The places of a sample, counted from the first datum. */
-SIMD void unlit_places(const struct rays *rays, const struct unlit_sample *sample, vf at[3])
+SIMD void unlit_places(const struct unlit_sample *sample, vf at[3])
 {
+	const struct rays *rays = sample->rays;
 	for (int axis = 0; axis < 3; axis++)
 		at[axis] = vf_fma(sample->k, rays->delta[axis], rays->datum[axis]);
 }
 
 /* Light a sample of which the gradient is known. */
-SIMD struct colour shade(const struct gz_cast *cast, const struct rays *rays,
-			 const struct unlit_sample *sample, vf gradient[3])
+SIMD struct colour shade(const struct gz_cast *cast, const struct unlit_sample *sample,
+			 vf gradient[3])
 {
 	struct lighting lighting = { .even = vf_set(1),
 				     .shine = { vf_set(0), vf_set(0) },
@@ -490,14 +494,15 @@ SIMD struct colour shade(const struct gz_cast *cast, const struct rays *rays,
 				     .weight = vf_set(0) };
 	const struct colour *colour = &sample->colour;
 	vf at[3], arriving = vf_set(1);
-	unlit_places(rays, sample, at);
+	unlit_places(sample, at);
 	if (cast->light.shadow.steps) {
 		const vf ambient = vf_set(cast->light.ambient);
 		arriving = find_arriving(cast, at, sample->mask);
 		lighting.even = vf_fma(arriving, vf_set(1) - ambient, ambient);
 	}
 	if (cast->light.gradient)
-		light_surfaces(cast, rays->view, at, sample->mask, gradient, arriving, &lighting);
+		light_surfaces(cast, sample->rays->view, at, sample->mask, gradient, arriving,
+			       &lighting);
 	return (struct colour) {
 		shade_channel(&cast->light, colour->red, 2047, &lighting, 0),
 		shade_channel(&cast->light, colour->green, 2047, &lighting, 1),
@@ -508,28 +513,28 @@ SIMD struct colour shade(const struct gz_cast *cast, const struct rays *rays,
 /* Light and add all samples that are still to be. Not inlined: only visible samples need it, which
  * are few, and one function for all voxel types is a twelfth of the code. */
 static __attribute__((noinline)) void light_samples(const struct gz_cast *cast,
-						    struct reading reading, const struct rays *rays,
-						    struct near_voxels *near, struct unlit *unlit,
-						    struct light *light)
+						    struct reading reading,
+						    struct near_voxels *near, struct unlit *unlit)
 {
 	vf gradients[LIT_AT_ONCE][3];
 	for (int i = 0; cast->light.gradient && i < unlit->count; i++) {
+		const struct unlit_sample *sample = &unlit->samples[i];
 		vf at[3];
-		unlit_places(rays, &unlit->samples[i], at);
-		find_gradient(cast, reading, rays, near, at, unlit->samples[i].mask, gradients[i]);
+		unlit_places(sample, at);
+		find_gradient(cast, reading, sample->rays, near, at, sample->mask, gradients[i]);
 	}
 	for (int i = 0; i < unlit->count; i++) {
 		const struct unlit_sample *sample = &unlit->samples[i];
-		add_colour_share(shade(cast, rays, sample, gradients[i]), sample->weight, light);
+		add_colour_share(shade(cast, sample, gradients[i]), sample->weight, sample->light);
 	}
 	unlit->count = 0;
 }
 
 /* Light and add what is still to be. */
-SIMD void settle_unlit(const struct march *m, struct light *light)
+SIMD void settle_unlit(const struct march *m)
 {
 	if (m->rich && m->unlit->count > 0)
-		light_samples(m->cast, m->reading, m->rays, m->near, m->unlit, light);
+		light_samples(m->cast, m->reading, m->near, m->unlit);
 }
 
 /* Add a voxel's colour to sums of colours by weight, and of weights. */
@@ -599,10 +604,11 @@ SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm ma
 		if (m->rays->view) {
 			const vf weight = take_light(opacity, visible, light);
 			light->depth = vf_fma(weight, k, light->depth);
-			m->unlit->samples[m->unlit->count++] =
-				(struct unlit_sample) { k, visible, colour, weight };
+			m->unlit->samples[m->unlit->count++] = (struct unlit_sample) {
+				k, visible, colour, weight, m->rays, light
+			};
 			if (m->unlit->count == LIT_AT_ONCE)
-				settle_unlit(m, light);
+				settle_unlit(m);
 			return;
 		}
 	}
