@@ -141,6 +141,10 @@ struct near_bytes {
 };
 
 struct near_blocks {
+	/* Differences of 8-bit voxels between the blocks before and after one along each axis,
+	 * where none is too great for a byte. */
+	__m128i along[3][BLOCK_EDGE];
+	int exact;              /* they are there; what follows is not */
 	struct near_bytes low;  /* of 8-bit voxels the only ones */
 	struct near_bytes high; /* of 16-bit voxels, less 128 */
 };
@@ -170,15 +174,21 @@ SIMD void near_slice(const __m128i rows[3], int z, struct near_bytes *near)
 	near->z[z + 1] = near_middle(two, next_two);
 }
 
+/* Two rows of eight 8-bit voxels. */
+SIMD __m128i near_two_rows(const char *from, int64_t row)
+{
+	int64_t rows[2];
+	memcpy(&rows[0], from, sizeof rows[0]);
+	memcpy(&rows[1], from + row, sizeof rows[1]);
+	return _mm_set_epi64x(rows[1], rows[0]);
+}
+
 /* Two rows of eight voxels each, their low bytes and, of 16 bits, their high ones less 128. */
 SIMD void near_rows(enum gz_voxel_type type, const char *from, int64_t row, __m128i *low,
 		    __m128i *high)
 {
 	if (type == GZ_VOXEL_U8) {
-		int64_t rows[2];
-		memcpy(&rows[0], from, sizeof rows[0]);
-		memcpy(&rows[1], from + row, sizeof rows[1]);
-		*low = _mm_set_epi64x(rows[1], rows[0]);
+		*low = near_two_rows(from, row);
 		return;
 	}
 	__m128i first, second;
@@ -190,12 +200,10 @@ SIMD void near_rows(enum gz_voxel_type type, const char *from, int64_t row, __m1
 			      _mm_set1_epi8((int8_t)0x80));
 }
 
-/* Load the blocks around one whose first voxel is at `from`; strides are in bytes. Rows are read to
- * three voxels beyond what is needed. */
-SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t row, int64_t slice,
-			   struct near_blocks *near)
+/* Load the bytes of the blocks around one whose first voxel is at `from`. */
+SIMD void near_load_bytes(enum gz_voxel_type type, const char *from, int64_t row, int64_t slice,
+			  struct near_blocks *near)
 {
-	from -= type == GZ_VOXEL_U8 ? 1 : 2;
 	__m128i low[3], high[3];
 	for (int z = 0; z < BLOCK_EDGE; z++) {
 		const char *rows = from + z * slice - row;
@@ -215,19 +223,114 @@ SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t ro
 	}
 }
 
+/* Two rows each of two slices of 8-bit voxels, less 128. */
+SIMD vi near_four_rows(const char *from, int64_t row, int64_t slice)
+{
+	return vi_xor(_mm256_set_m128i(near_two_rows(from + slice, row), near_two_rows(from, row)),
+		      _mm256_set1_epi8((int8_t)0x80));
+}
+
+/* In each half the first four bytes of four rows, from byte `first` on. */
+#define near_four_bytes(two, next_two, first)                             \
+	_mm256_castps_si256(_mm256_shuffle_ps(                            \
+		_mm256_castsi256_ps(_mm256_srli_epi64(two, 8 * (first))), \
+		_mm256_castsi256_ps(_mm256_srli_epi64(next_two, 8 * (first))), 0x88))
+
+/* Least and greatest bytes. */
+struct byte_range {
+	vi least, most;
+};
+
+/* The differences between signed bytes, which are exact if they are neither -128 nor 127. */
+SIMD vi byte_differences(vi after, vi before, struct byte_range *range)
+{
+	const vi difference = _mm256_subs_epi8(after, before);
+	range->least = _mm256_min_epi8(range->least, difference);
+	range->most = _mm256_max_epi8(range->most, difference);
+	return difference;
+}
+
+/* Load the differences around a block of 8-bit voxels, two slices a register. Returns whether all
+ * are exact. */
+SIMD int near_load_differences(const char *from, int64_t row, int64_t slice,
+			       __m128i along[3][BLOCK_EDGE])
+{
+	struct byte_range range = { vi_set(0), vi_set(0) };
+	vi middle[2];
+	for (int half = 0; half < 2; half++) {
+		vi rows[3];
+		for (int i = 0; i < 3; i++)
+			rows[i] = near_four_rows(from + 2 * half * slice + (2 * i - 1) * row, row,
+						 slice);
+		const vi two = _mm256_alignr_epi8(rows[1], rows[0], 8);
+		const vi next_two = _mm256_alignr_epi8(rows[2], rows[1], 8);
+		middle[half] = near_four_bytes(two, next_two, 1);
+		const vi x = byte_differences(near_four_bytes(two, next_two, 2),
+					      near_four_bytes(two, next_two, 0), &range);
+		const vi y = byte_differences(near_four_bytes(rows[1], rows[2], 1),
+					      near_four_bytes(rows[0], rows[1], 1), &range);
+		vi_store((uint32_t *)&along[0][2 * half], x);
+		vi_store((uint32_t *)&along[1][2 * half], y);
+	}
+	/* the slices before and after them, in both halves */
+	vi ends[2];
+	for (int side = 0; side < 2; side++) {
+		const char *rows = from + (side == 0 ? -1 : BLOCK_EDGE) * slice;
+		ends[side] = near_four_bytes(near_four_rows(rows, row, 0),
+					     near_four_rows(rows + 2 * row, row, 0), 1);
+	}
+	const vi inner = _mm256_permute2x128_si256(middle[0], middle[1], 0x21);
+	const vi first = _mm256_permute2x128_si256(ends[0], middle[0], 0x20);
+	const vi last = _mm256_permute2x128_si256(middle[1], ends[1], 0x31);
+	vi_store((uint32_t *)&along[2][0], byte_differences(inner, first, &range));
+	vi_store((uint32_t *)&along[2][2], byte_differences(last, inner, &range));
+	const vi low = _mm256_cmpeq_epi8(range.least, _mm256_set1_epi8(INT8_MIN));
+	const vi high = _mm256_cmpeq_epi8(range.most, _mm256_set1_epi8(INT8_MAX));
+	return _mm256_testz_si256(vi_or(low, high), vi_or(low, high));
+}
+
+/* Load the blocks around one whose first voxel is at `from`; strides are in bytes. Rows are read to
+ * three voxels beyond what is needed. */
+SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t row, int64_t slice,
+			   struct near_blocks *near)
+{
+	from -= type == GZ_VOXEL_U8 ? 1 : 2;
+	near->exact = type == GZ_VOXEL_U8 && near_load_differences(from, row, slice, near->along);
+	if (!near->exact)
+		near_load_bytes(type, from, row, slice, near);
+}
+
 /* The slices of the block before (0) or after (1) along an axis. */
 SIMD const __m128i *near_side(const struct near_bytes *near, int axis, int side)
 {
 	return axis == 0 ? near->x[side] : axis == 1 ? near->y[side] : near->z + 2 * side;
 }
 
+/* The unit of near_rows_of(). */
+SIMD float near_unit(const struct near_blocks *near, enum gz_voxel_type type)
+{
+	(void)type;
+	return near->exact ? 1 / (256.0F * 32767) : 1.0F / 32767;
+}
+
 /* Differences along an axis, weighted along x, in the order (y, z) = 00, 10, 01, 11. `first` is the
- * number of the voxel before each lane's place. Returns 0 if there are none. */
-SIMD int near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, int axis, vi first,
-		      vi weights, vi rows[4])
+ * number of the voxel before each lane's place. */
+SIMD void near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, int axis, vi first,
+		       vi weights, vi rows[4])
 {
 	const vi control = words_control(first);
 	vi before[2], after[2];
+	if (near->exact) {
+		const vi zero = vi_set(0);
+		near_look_up(near->along[axis], control, &after[0], &after[1]);
+		for (int z = 0; z < 2; z++) {
+			rows[2 * z] =
+				vi_sum_of_products(_mm256_unpacklo_epi8(zero, after[z]), weights);
+			rows[2 * z + 1] =
+				vi_sum_of_products(_mm256_unpackhi_epi8(zero, after[z]), weights);
+		}
+		return;
+	}
 	near_look_up(near_side(&near->low, axis, 0), control, &before[0], &before[1]);
 	near_look_up(near_side(&near->low, axis, 1), control, &after[0], &after[1]);
 	if (type == GZ_VOXEL_U8) {
@@ -239,7 +342,7 @@ SIMD int near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, i
 				rows[2 * z + y] = vi_sum_of_products(
 					_mm256_maddubs_epi16(pairs[y], signs), weights);
 		}
-		return 1;
+		return;
 	}
 	vi high_before[2], high_after[2];
 	near_look_up(near_side(&near->high, axis, 0), control, &high_before[0], &high_before[1]);
@@ -254,7 +357,6 @@ SIMD int near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, i
 			vi_sum_of_products(_mm256_unpackhi_epi8(before[z], high_before[z]),
 					   weights));
 	}
-	return 1;
 }
 
 /* There are no blocks of floats. */

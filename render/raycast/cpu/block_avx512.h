@@ -239,18 +239,22 @@ SIMD void near_load_blocks(enum gz_voxel_type type, const char *from, int64_t ro
 	near->exact = beyond == 0;
 }
 
+/* The unit of near_rows_of(); 0: there are no differences. */
+SIMD float near_unit(const struct near_blocks *near, enum gz_voxel_type type)
+{
+	return type == GZ_VOXEL_U8 || near->exact ? 1.0F / 32767 : 0;
+}
+
 /* Differences along an axis, weighted along x, in the order (y, z) = 00, 10, 01, 11. `first` is the
- * number of the voxel before each lane's place. Returns 0 if there are none. */
-SIMD int near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, int axis, vi first,
-		      vi weights, vi rows[4])
+ * number of the voxel before each lane's place. */
+SIMD void near_rows_of(const struct near_blocks *near, enum gz_voxel_type type, int axis, vi first,
+		       vi weights, vi rows[4])
 {
 	vi pairs[4];
-	if (type != GZ_VOXEL_U8 && !near->exact)
-		return 0;
+	(void)type;
 	pairs_of_words(near->along[axis], first, pairs);
 	for (int i = 0; i < 4; i++)
 		rows[i] = vi_sum_of_products(pairs[i], weights);
-	return 1;
 }
 
 SIMD vf block_voxel_f32(const struct block_voxels *block, vi index)

@@ -82,13 +82,13 @@ SIMD vi weigh_difference(enum gz_voxel_type type, vi before, vi after, vi weight
 }
 
 /* One component from its four rows, in the order (y, z) = 00, 10, 01, 11. */
-SIMD vf mix_differences(const vi rows[4], const vf share[3])
+SIMD vf mix_differences(const vi rows[4], const vf share[3], float unit)
 {
 	vf mixed[4];
 	for (int i = 0; i < 4; i++)
 		mixed[i] = vf_from_i(rows[i]);
 	return mix(mix(mixed[0], mixed[1], share[1]), mix(mixed[2], mixed[3], share[1]), share[2]) *
-	       vf_set(1.0F / 32767);
+	       vf_set(unit);
 }
 
 /* Trilinear differences at places in the blocks nearby, of voxels of 8 or 16 bits. Returns 0 if the
@@ -96,14 +96,16 @@ SIMD vf mix_differences(const vi rows[4], const vf share[3])
 SIMD int near_mix(const struct near_voxels *near, enum gz_voxel_type type, const vf places[3],
 		  vf difference[3])
 {
+	const float unit = near_unit(&near->blocks, type);
+	if (unit == 0)
+		return 0;
 	vf whole[3], share[3];
 	block_shares(places, whole, share);
 	const vi weights = word_weights(share[0]), first = block_first(whole);
 	for (int axis = 0; axis < 3; axis++) {
 		vi rows[4];
-		if (!near_rows_of(&near->blocks, type, axis, first, weights, rows))
-			return 0;
-		difference[axis] = mix_differences(rows, share);
+		near_rows_of(&near->blocks, type, axis, first, weights, rows);
+		difference[axis] = mix_differences(rows, share, unit);
 	}
 	return 1;
 }
@@ -171,7 +173,7 @@ SIMD void difference_words(const struct gz_cast *cast, enum gz_voxel_type type, 
 		vi rows[4];
 		for (int i = 0; i < 4; i++)
 			rows[i] = weigh_difference(type, before[axis][i], after[axis][i], weights);
-		difference[axis] = mix_differences(rows, share);
+		difference[axis] = mix_differences(rows, share, 1.0F / 32767);
 	}
 }
 
