@@ -19,10 +19,10 @@ struct look_up_places {
 	bool held, differences_held; /**< whether blocks held all places */
 };
 
-/** Look voxels of 8 or 16 bits up around all places; @p inside: all are at least a voxel from the
- *  rim, so find differences, too. @p wide: by wide blocks, which avx2 has not. */
+/** Look voxels of 8 or 16 bits up around all places, and @p differences: find those, too, of places
+ *  in the volume. @p wide: by wide blocks, which avx2 has not. */
 typedef void look_up_function(const struct gz_cast *cast, enum gz_voxel_type type, bool wide,
-			      bool inside, struct look_up_places *places);
+			      bool differences, struct look_up_places *places);
 
 look_up_function look_up_avx2, look_up_avx512;
 

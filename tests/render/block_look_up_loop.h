@@ -48,13 +48,14 @@ SIMD void look_up_differences(const struct gz_cast *cast, enum gz_voxel_type typ
 {
 	const struct rays rays = { .delta = { vf_set(1), vf_set(-1), vf_set(1) } };
 	struct near_voxels near;
-	near_nothing(&near);
+	near_nothing(&rays, &near);
 	places->differences_held = true;
 	for (int first = 0; first < LOOK_UP_PLACES; first += SIMD_LANES) {
-		vf at[3], by_block[3], single[3];
-		load_places(places, first, at);
-		difference_words(cast, type, at, vm_all(), single);
-		const int held = near_differences(cast, type, &rays, &near, at, vm_all(), by_block);
+		struct places here = { .mask = vm_all() };
+		vf by_block[3], single[3];
+		load_places(places, first, here.at);
+		difference_words(cast, type, &here, single);
+		const int held = near_differences(cast, type, &here, &here, &near, by_block);
 		places->differences_held = places->differences_held && held;
 		for (int axis = 0; axis < 3; axis++) {
 			vf_store(places->difference_single[axis] + first, single[axis]);
@@ -64,14 +65,14 @@ SIMD void look_up_differences(const struct gz_cast *cast, enum gz_voxel_type typ
 	}
 }
 
-#define DEFINE_LOOK_UP(name)                                                                   \
-	void name(const struct gz_cast *cast, enum gz_voxel_type type, bool wide, bool inside, \
-		  struct look_up_places *places)                                               \
-	{                                                                                      \
-		if (wide && block_exists(type, 1))                                             \
-			look_up_values(cast, type, 1, places);                                 \
-		else                                                                           \
-			look_up_values(cast, type, 0, places);                                 \
-		if (inside)                                                                    \
-			look_up_differences(cast, type, places);                               \
+#define DEFINE_LOOK_UP(name)                                                      \
+	void name(const struct gz_cast *cast, enum gz_voxel_type type, bool wide, \
+		  bool differences, struct look_up_places *places)                \
+	{                                                                         \
+		if (wide && block_exists(type, 1))                                \
+			look_up_values(cast, type, 1, places);                    \
+		else                                                              \
+			look_up_values(cast, type, 0, places);                    \
+		if (differences)                                                  \
+			look_up_differences(cast, type, places);                  \
 	}

@@ -233,13 +233,9 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 	struct light light[TILE_PARTS];
 	struct near_voxels near;
 	struct unlit unlit;
-	const struct march march = {
-		cast, reading, tile->step, rich, coloured, rays, &near, &unlit
-	};
+	const struct march march = { cast, reading, tile->step, rich,  coloured,
+				     0,    rays,    &near,      &unlit };
 	int hit = 0;
-	unlit.count = 0;
-	if (rich)
-		near_nothing(&near);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		set_up_rays(cast, tile, part * SIMD_LANES, &rays[part]);
 		light[part] =
@@ -250,6 +246,11 @@ SIMD uint32_t cast_tile_rays(const struct gz_cast *cast, const struct gz_cast_ti
 			rays[part].view = &view[part];
 		}
 	}
+	unlit.rays = rays;
+	unlit.light = light;
+	unlit.count = 0;
+	if (rich)
+		near_nothing(rays, &near);
 	if (hit)
 		samples = rich && cast->preintegrated_extinction
 				  ? cast_tile_by_segments(&march, light)

@@ -58,16 +58,17 @@ struct march {
 	int step;     /* of the plan */
 	int rich;     /* there may be light or voxels with colours; a constant of each kernel, */
 	int coloured; /* as is that there are such voxels */
-	const struct rays *rays; /* of one register, or the first of several */
+	int part;     /* which register of the tile's, or the first of several */
+	const struct rays *rays; /* its rays */
 	/* with light: */
 	struct near_voxels *near; /* of the tile: cast_near.h */
 	struct unlit *unlit;      /* of the tile: cast_shade.h */
 };
 
 /* The march of the rays of one register of several. */
-#define march_of_part(m, part)                                                          \
+#define march_of_part(m, which)                                                         \
 	((struct march) { (m)->cast, (m)->reading, (m)->step, (m)->rich, (m)->coloured, \
-			  (m)->rays + (part), (m)->near, (m)->unlit })
+			  (m)->part + (which), (m)->rays + (which), (m)->near, (m)->unlit })
 
 /* Steps from the origin to where the rays enter the whole box, and to where they enter and leave
  * the shown part of it. */

@@ -240,16 +240,6 @@ SIMD int difference_nearby(struct reading reading, const struct near_voxels *nea
 	       near_places(near, at, mask, places) &&
 	       near_mix(near, reading.type, places, difference);
 }
-
-SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
-			    const struct rays *rays, struct near_voxels *near, const vf at[3],
-			    vm mask, vf difference[3])
-{
-	if (type == GZ_VOXEL_F32)
-		difference_voxels(cast, type, at, mask, difference);
-	else if (near_differences(cast, type, rays, near, at, mask, difference) == 0)
-		difference_words(cast, type, at, mask, difference);
-}
 #else
 SIMD int difference_nearby(struct reading reading, const struct near_voxels *near, const vf at[3],
 			   vm mask, vf difference[3])
@@ -258,23 +248,24 @@ SIMD int difference_nearby(struct reading reading, const struct near_voxels *nea
 	return 0;
 }
 
-SIMD void difference_inside(const struct gz_cast *cast, enum gz_voxel_type type,
-			    const struct rays *rays, struct near_voxels *near, const vf at[3],
-			    vm mask, vf difference[3])
+SIMD int by_words(const struct gz_cast *cast, struct reading reading)
 {
-	(void)rays, (void)near;
-	difference_voxels(cast, type, at, mask, difference);
+	(void)cast, (void)reading;
+	return 0;
+}
+
+SIMD void difference_by_words(const struct gz_cast *cast, enum gz_voxel_type type,
+			      const struct places *here, const struct places *next,
+			      struct near_voxels *near, vf difference[3])
+{
+	(void)cast, (void)type, (void)here, (void)next, (void)near, (void)difference;
 }
 #endif
 
-/* The gradient's differences where some places of the mask may lie at the rim, or no block nearby
- * holds them all. */
-SIMD void difference_anywhere(const struct gz_cast *cast, struct reading reading,
-			      const struct rays *rays, struct near_voxels *near, const vf at[3],
-			      vm mask, vf difference[3])
+/* The gradient's differences where words do not give them. */
+SIMD void difference_floats(const struct gz_cast *cast, struct reading reading, const vf at[3],
+			    vm mask, vf difference[3])
 {
-	const enum gz_voxel_type type = reading.type;
-	const int nearest = reading.nearest;
 	vm outside = vm_but(mask, mask); /* closer than a voxel, and rounding, to the rim */
 	for (int axis = 0; axis < 3; axis++)
 		outside =
@@ -282,12 +273,12 @@ SIMD void difference_anywhere(const struct gz_cast *cast, struct reading reading
 					     vf_less(vf_set(cast->dims[axis] - 2.01F), at[axis])));
 	/* The two ways round differently, so a ray's way must not depend on its neighbours. */
 	const vm inside = vm_but(mask, outside);
-	const int by_voxels = !nearest && !cast->bricks.table && vm_any(inside);
+	const int by_voxels = !reading.nearest && !cast->bricks.table && vm_any(inside);
 	if (by_voxels)
-		difference_inside(cast, type, rays, near, at, inside, difference);
+		difference_voxels(cast, reading.type, at, inside, difference);
 	if (!by_voxels || vm_any(vm_and(mask, outside))) {
 		vf samples[3];
-		difference_samples(cast, type, nearest, at, mask, samples);
+		difference_samples(cast, reading.type, reading.nearest, at, mask, samples);
 		for (int axis = 0; axis < 3; axis++)
 			difference[axis] =
 				by_voxels ? vf_select(outside, samples[axis], difference[axis])
@@ -295,12 +286,17 @@ SIMD void difference_anywhere(const struct gz_cast *cast, struct reading reading
 	}
 }
 
-/* The gradient at places counted from the first datum, on the way that the rays go. */
-SIMD void find_gradient(const struct gz_cast *cast, struct reading reading, const struct rays *rays,
-			struct near_voxels *near, const vf at[3], vm mask, vf gradient[3])
+/* The gradient at places, on the way that the rays go; `next` are those asked for after them. */
+SIMD void find_gradient(const struct gz_cast *cast, struct reading reading,
+			const struct places *here, const struct places *next,
+			struct near_voxels *near, vf gradient[3])
 {
-	if (!difference_nearby(reading, near, at, mask, gradient))
-		difference_anywhere(cast, reading, rays, near, at, mask, gradient);
+	if (!difference_nearby(reading, near, here->at, here->mask, gradient)) {
+		if (by_words(cast, reading))
+			difference_by_words(cast, reading.type, here, next, near, gradient);
+		else
+			difference_floats(cast, reading, here->at, here->mask, gradient);
+	}
 	for (int axis = 0; axis < 3; axis++)
 		gradient[axis] = gradient[axis] * vf_set(cast->light.gradient_scale[axis]);
 }
@@ -466,26 +462,35 @@ struct unlit_sample {
 	vm mask;
 	struct colour colour;
 	vf weight; /* share of the light that it adds */
-	const struct rays *rays;
-	struct light *light; /* of its rays, which it is added to */
+	int part;  /* the register of its rays */
 };
 
 struct unlit {
+	const struct rays *rays; /* of the tile */
+	struct light *light;
 	int count;
 	struct unlit_sample samples[LIT_AT_ONCE];
 };
 
-/* The places of a sample, counted from the first datum. */
-SIMD void unlit_places(const struct unlit_sample *sample, vf at[3])
+/* The register of a sample's rays: a constant where a tile has but one. */
+SIMD int unlit_part(const struct unlit_sample *sample)
 {
-	const struct rays *rays = sample->rays;
+	return TILE_PARTS == 1 ? 0 : sample->part;
+}
+
+/* The places of a sample. */
+SIMD struct places unlit_places(const struct unlit *unlit, const struct unlit_sample *sample)
+{
+	const struct rays *rays = &unlit->rays[unlit_part(sample)];
+	struct places places = { .mask = sample->mask };
 	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(sample->k, rays->delta[axis], rays->datum[axis]);
+		places.at[axis] = vf_fma(sample->k, rays->delta[axis], rays->datum[axis]);
+	return places;
 }
 
 /* Light a sample of which the gradient is known. */
-SIMD struct colour shade(const struct gz_cast *cast, const struct unlit_sample *sample,
-			 vf gradient[3])
+SIMD struct colour shade(const struct gz_cast *cast, const struct unlit *unlit,
+			 const struct unlit_sample *sample, vf gradient[3])
 {
 	struct lighting lighting = { .even = vf_set(1),
 				     .shine = { vf_set(0), vf_set(0) },
@@ -493,16 +498,17 @@ SIMD struct colour shade(const struct gz_cast *cast, const struct unlit_sample *
 						   vf_set(0) },
 				     .weight = vf_set(0) };
 	const struct colour *colour = &sample->colour;
-	vf at[3], arriving = vf_set(1);
-	unlit_places(sample, at);
+	const struct places places = unlit_places(unlit, sample);
+	const vf *at = places.at;
+	vf arriving = vf_set(1);
 	if (cast->light.shadow.steps) {
 		const vf ambient = vf_set(cast->light.ambient);
 		arriving = find_arriving(cast, at, sample->mask);
 		lighting.even = vf_fma(arriving, vf_set(1) - ambient, ambient);
 	}
 	if (cast->light.gradient)
-		light_surfaces(cast, sample->rays->view, at, sample->mask, gradient, arriving,
-			       &lighting);
+		light_surfaces(cast, unlit->rays[unlit_part(sample)].view, at, sample->mask,
+			       gradient, arriving, &lighting);
 	return (struct colour) {
 		shade_channel(&cast->light, colour->red, 2047, &lighting, 0),
 		shade_channel(&cast->light, colour->green, 2047, &lighting, 1),
@@ -516,16 +522,26 @@ static __attribute__((noinline)) void light_samples(const struct gz_cast *cast,
 						    struct reading reading,
 						    struct near_voxels *near, struct unlit *unlit)
 {
+	struct places here = unlit_places(unlit, &unlit->samples[0]);
 	vf gradients[LIT_AT_ONCE][3];
+	struct light light[TILE_PARTS];
+	for (int part = 0; part < TILE_PARTS; part++)
+		light[part] = unlit->light[part];
 	for (int i = 0; cast->light.gradient && i < unlit->count; i++) {
-		const struct unlit_sample *sample = &unlit->samples[i];
-		vf at[3];
-		unlit_places(sample, at);
-		find_gradient(cast, reading, sample->rays, near, at, sample->mask, gradients[i]);
+		const int last = i + 1 == unlit->count;
+		const struct places next = unlit_places(unlit, &unlit->samples[last ? i : i + 1]);
+		find_gradient(cast, reading, &here, &next, near, gradients[i]);
+		here = next;
 	}
 	for (int i = 0; i < unlit->count; i++) {
 		const struct unlit_sample *sample = &unlit->samples[i];
-		add_colour_share(shade(cast, sample, gradients[i]), sample->weight, sample->light);
+		add_colour_share(shade(cast, unlit, sample, gradients[i]), sample->weight,
+				 &light[unlit_part(sample)]);
+	}
+	for (int part = 0; part < TILE_PARTS; part++) {
+		unlit->light[part].red = light[part].red;
+		unlit->light[part].green = light[part].green;
+		unlit->light[part].blue = light[part].blue;
 	}
 	unlit->count = 0;
 }
@@ -604,9 +620,8 @@ SIMD void composite_at(const struct march *m, vf k, vi packed, vf opacity, vm ma
 		if (m->rays->view) {
 			const vf weight = take_light(opacity, visible, light);
 			light->depth = vf_fma(weight, k, light->depth);
-			m->unlit->samples[m->unlit->count++] = (struct unlit_sample) {
-				k, visible, colour, weight, m->rays, light
-			};
+			m->unlit->samples[m->unlit->count++] =
+				(struct unlit_sample) { k, visible, colour, weight, m->part };
 			if (m->unlit->count == LIT_AT_ONCE)
 				settle_unlit(m);
 			return;

@@ -249,6 +249,16 @@ SIMD int vf_store_packed(float *x, vf a, vm mask)
 		x[count++] = lane[__builtin_ctz(bits)];
 	return count;
 }
+/* The first lane. */
+SIMD float vf_first(vf a)
+{
+	return _mm256_cvtss_f32(a);
+}
+/* Change the sign where `sign` is -0. */
+SIMD vf vf_flip(vf a, vf sign)
+{
+	return _mm256_xor_ps(a, sign);
+}
 SIMD vi vi_subtract_words(vi a, vi b)
 {
 	return _mm256_sub_epi16(a, b);

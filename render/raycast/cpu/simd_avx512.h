@@ -242,6 +242,16 @@ SIMD int vf_store_packed(float *x, vf a, vm mask)
 	vf_store(x, _mm512_maskz_compress_ps(mask, a));
 	return __builtin_popcount(mask);
 }
+/* The first lane. */
+SIMD float vf_first(vf a)
+{
+	return _mm512_cvtss_f32(a);
+}
+/* Change the sign where `sign` is -0. */
+SIMD vf vf_flip(vf a, vf sign)
+{
+	return _mm512_xor_ps(a, sign);
+}
 SIMD vi vi_subtract_words(vi a, vi b)
 {
 	return _mm512_sub_epi16(a, b);
