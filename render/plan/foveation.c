@@ -39,12 +39,20 @@ const struct gz_option gz_foveation_options[] = {
 	  .help = "acuity, contrast: how far from the gaze every pixel has a ray, even where "
 		  "pixels "
 		  "are finer than the eye resolves, degrees" },
+	/* Both presets are chosen by docs/results.md: objects beside the gaze are as calm as those
+	 * at it. */
+	{ "foveation.acuity_far_deg", GZ_OPTION_DOUBLE, AT(acuity_far_deg), 0.1, 179, .preset = "5",
+	  .help = "acuity, contrast: how far from the gaze the distance of rays begins to grow "
+		  "less, "
+		  "degrees" },
+	{ "foveation.acuity_far_share", GZ_OPTION_DOUBLE, AT(acuity_far_share), 0, 1,
+	  .preset = "0.5",
+	  .help = "acuity, contrast: how much it grows there, as a share of acuity_slope" },
 	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
 	  .preset = "0.4",
 	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "
 		  "eightfold" },
-	/* Chosen by docs/results.md: outlines before an empty background, little else. */
-	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "0.7",
+	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "1",
 	  .help = "acuity: rays that differ by this contrast or more from their neighbours are at "
 		  "an edge, which gets finer rays; 1 = no edge does" },
 	{ "foveation.edge_finest", GZ_OPTION_DOUBLE, AT(edge_finest), 0.25, 1, .preset = "0.5",

@@ -69,13 +69,15 @@ struct gz_spacing_table {
 
 /** All settings of the methods; the option keys are "foveation.<name>". */
 struct gz_foveation {
-	int method;                /**< index into gz_methods (method.h) */
-	int step_rule;             /**< enum gz_step_rule */
-	int step_phase;            /**< enum gz_step_phase */
-	int filter;                /**< enum gz_filter; pyramids only, regions are bilinear */
-	double acuity_slope;       /**< m: degrees per cycle and degree of eccentricity */
-	double acuity_foveal_deg;  /**< omega0: degrees per cycle at the gaze */
-	double acuity_full_deg;    /**< acuity, contrast: every pixel has a ray up to here */
+	int method;               /**< index into gz_methods (method.h) */
+	int step_rule;            /**< enum gz_step_rule */
+	int step_phase;           /**< enum gz_step_phase */
+	int filter;               /**< enum gz_filter; pyramids only, regions are bilinear */
+	double acuity_slope;      /**< m: degrees per cycle and degree of eccentricity */
+	double acuity_foveal_deg; /**< omega0: degrees per cycle at the gaze */
+	double acuity_full_deg;   /**< acuity, contrast: every pixel has a ray up to here */
+	double acuity_far_deg;   /**< acuity, contrast: from here on spacings grow less, (0, 180) */
+	double acuity_far_share; /**< by this share of acuity_slope, [0, 1] */
 	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
 	double edge_contrast;      /**< acuity: least contrast of an edge, (0, 1]; 1: none is one */
 	double edge_finest;        /**< acuity: spacing at edges, times what the eye resolves */

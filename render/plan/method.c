@@ -112,7 +112,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.refines_edges = true,
 		.is_pyramid = true,
 		.own_steps = GZ_STEPS_RUNG,
-		.set_curves = gz_plan_set_foveal_acuity_curve,
+		.set_curves = gz_plan_set_ray_curve,
 	},
 	[GZ_METHOD_MDC3] = {
 		.help = "mdc with a third, coarsest region",
@@ -147,7 +147,7 @@ const struct gz_method gz_methods[GZ_METHOD_COUNT] = {
 		.refines = true,
 		.is_pyramid = true,
 		.own_steps = GZ_STEPS_PLACE,
-		.set_curves = gz_plan_set_foveal_acuity_curve,
+		.set_curves = gz_plan_set_ray_curve,
 	},
 };
 

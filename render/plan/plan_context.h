@@ -61,8 +61,9 @@ void gz_plan_context_make(const struct gz_plan_request *request,
 /** Set the spacing curve to what the eye resolves. */
 void gz_plan_set_acuity_curve(struct gz_plan_context *context);
 
-/** The same, and full_rad to the setting. */
-void gz_plan_set_foveal_acuity_curve(struct gz_plan_context *context);
+/** Set it to where acuity casts rays: what the eye resolves up to acuity_far_deg, and rays that
+ *  are nearer to each other beyond. Set full_rad to the setting. */
+void gz_plan_set_ray_curve(struct gz_plan_context *context);
 
 /** Set the spacing and step curves from the user's table. */
 void gz_plan_set_table_curves(struct gz_plan_context *context);

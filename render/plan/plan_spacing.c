@@ -31,18 +31,28 @@ static double curve_at(const struct gz_plan_curve *curve, double rad)
 	return curve->value[i] + curve->slope[i] * fmax(rad - curve->at_rad[i], 0);
 }
 
-void gz_plan_set_acuity_curve(struct gz_plan_context *context)
+/* Two rays for a cycle of so many degrees. */
+static void add_cycle(struct gz_plan_context *context, double at_deg, double cycle_deg)
 {
-	const double from_deg = context->foveation->acuity_foveal_deg;
-	const double to_deg = from_deg + 180 * context->foveation->acuity_slope;
-	curve_add(&context->spacing, 0, from_deg / 2 / deg_per_rad);
-	curve_add(&context->spacing, 180, to_deg / 2 / deg_per_rad);
+	curve_add(&context->spacing, at_deg, cycle_deg / 2 / deg_per_rad);
 }
 
-void gz_plan_set_foveal_acuity_curve(struct gz_plan_context *context)
+void gz_plan_set_acuity_curve(struct gz_plan_context *context)
 {
-	gz_plan_set_acuity_curve(context);
-	context->full_rad = context->foveation->acuity_full_deg / deg_per_rad;
+	const double foveal_deg = context->foveation->acuity_foveal_deg;
+	add_cycle(context, 0, foveal_deg);
+	add_cycle(context, 180, foveal_deg + 180 * context->foveation->acuity_slope);
+}
+
+void gz_plan_set_ray_curve(struct gz_plan_context *context)
+{
+	const struct gz_foveation *foveation = context->foveation;
+	const double slope = foveation->acuity_slope, far_deg = foveation->acuity_far_deg;
+	const double near = foveation->acuity_foveal_deg + far_deg * slope;
+	add_cycle(context, 0, foveation->acuity_foveal_deg);
+	add_cycle(context, far_deg, near);
+	add_cycle(context, 180, near + (180 - far_deg) * slope * foveation->acuity_far_share);
+	context->full_rad = foveation->acuity_full_deg / deg_per_rad;
 }
 
 void gz_plan_set_table_curves(struct gz_plan_context *context)

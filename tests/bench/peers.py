@@ -37,7 +37,7 @@ class Peers(unittest.TestCase):
             pictures = []
             for method, gaze in ("standard", GAZES[0]), ("acuity", GAZES[0]), ("acuity", GAZES[2]):
                 times, path = run_gazeview(
-                    GAZEVIEW, scene, "640x360", "cpu", method, gaze, 3, folder
+                    GAZEVIEW, scene, "1280x720", "cpu", method, gaze, 3, folder
                 )
                 self.assertEqual(len(times), 2)
                 self.assertTrue(all(ms > 0 for ms in times), times)

@@ -198,17 +198,17 @@ def make_ball(size=48, kind=np.uint8):
 
 class Rendering(unittest.TestCase):
     def test_foveated_picture_is_the_full_one_at_the_gaze_for_fewer_rays(self):
-        ball, size, gaze = make_ball(), (640, 480), (0.3, 0.6)
+        ball, size, gaze = make_ball(), (1280, 960), (0.3, 0.6)
         settings = {"display.mm": (400, 300), "display.distance_mm": 300}
         full = gazecast.render(ball, gaze=gaze, method="standard", size=size, settings=settings, backend="cpu")
         foveated = gazecast.render(ball, gaze=gaze, size=size, settings=settings, backend="cpu")
-        self.assertEqual(full.rgba.shape, (480, 640, 4))
-        self.assertEqual(full.cost["rays"], 640 * 480)
+        self.assertEqual(full.rgba.shape, (960, 1280, 4))
+        self.assertEqual(full.cost["rays"], 1280 * 960)
         self.assertLess(foveated.cost["rays"], full.cost["rays"] / 2)
         self.assertGreater(full.cost["total_ms"], 0)
         self.assertTrue((full.rgba[..., 3] == 255).all())
         self.assertGreater(full.rgba[..., :3].max(), 50)
-        at = np.s_[int(0.6 * 480) - 8 : int(0.6 * 480) + 8, int(0.3 * 640) - 8 : int(0.3 * 640) + 8]
+        at = np.s_[int(0.6 * 960) - 8 : int(0.6 * 960) + 8, int(0.3 * 1280) - 8 : int(0.3 * 1280) + 8]
         np.testing.assert_array_equal(full.rgba[at], foveated.rgba[at])
         self.assertTrue((full.rgba != foveated.rgba).any())
 

@@ -221,6 +221,7 @@ static void acuity_is_refined_at_edges_alone(void **state)
 	(void)state;
 	enum { WIDTH = 1280, HEIGHT = 720 };
 	struct gz_foveation foveation = gz_foveation_default();
+	foveation.edge_contrast = 0.7;
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	const struct gz_point gaze = { 0.4F, 0.6F };
 	struct gz_plan plan = { 0 }, acuity = { 0 }, finest = { 0 };

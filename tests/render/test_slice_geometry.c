@@ -285,6 +285,7 @@ static void every_pixel_lies_between_points_that_are_drawn(void **state)
 	struct gz_foveation foveation = small_scene_foveation();
 	const struct gz_display display = gz_display_default(WIDTH, HEIGHT);
 	foveation.acuity_slope = 0.2; /* so that a small picture has all spacings */
+	foveation.acuity_far_share = 1;
 	for (int method = 0; method < GZ_METHOD_COUNT; method++)
 		for (size_t i = 0; i < sizeof gazes / sizeof gazes[0]; i++) {
 			struct gz_plan plan = { 0 };

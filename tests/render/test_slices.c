@@ -246,6 +246,7 @@ static void foveated_picture_is_full_at_the_gaze_and_takes_fewer_points(void **s
 	scene.gaze = (struct gz_point) { 0.3F, 0.4F };
 	scene.rays.slicing.count = 24;
 	scene.foveation.acuity_slope = 0.1; /* so that a small picture has coarse places */
+	scene.foveation.acuity_far_share = 1;
 	scene.foveation.mdc_square_px = 40;
 	show_scene(&scene);
 	scene.foveation.method = gz_method_full();

@@ -32,6 +32,7 @@ static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 		{ "foveation.reconstruction", { 0, 0, 0, 1, 0, 0, 1, 1 } },
 		{ "foveation.acuity_slope", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.acuity_full_deg", { 0, 0, 0, 1, 0, 0, 0, 1 } },
+		{ "foveation.acuity_far_share", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.acuity_step_growth", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.edge_contrast", { 0, 0, 0, 1, 0, 0, 0, 0 } },
 		{ "foveation.contrast_finest", { 0, 0, 0, 0, 0, 0, 0, 1 } },
