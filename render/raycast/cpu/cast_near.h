@@ -71,14 +71,10 @@ SIMD __m128 near_rearmost(const struct near_voxels *near, const struct places *h
 	float first[3];
 	for (int axis = 0; axis < 3; axis++) {
 		const vf sign = vf_set(near->backward[axis]), none = vf_set(INFINITY);
-		const vf at = vf_flip(here->at[axis], sign);
-		const vf after = vf_flip(next->at[axis], sign);
-		if (TILE_PARTS == 1)
-			first[axis] = vf_least_of(at, here->mask);
-		else
-			first[axis] = vf_least_of(vf_min(vf_select(here->mask, at, none),
-							 vf_select(next->mask, after, none)),
-						  vm_all());
+		vf at = vf_select(here->mask, vf_flip(here->at[axis], sign), none);
+		if (TILE_PARTS > 1)
+			at = vf_min(at, vf_select(next->mask, vf_flip(next->at[axis], sign), none));
+		first[axis] = vf_least_of(at, vm_all());
 	}
 	return _mm_xor_ps(_mm_setr_ps(first[0], first[1], first[2], 0), near->backward);
 }
