@@ -174,15 +174,6 @@ SIMD void near_slice(const __m128i rows[3], int z, struct near_bytes *near)
 	near->z[z + 1] = near_middle(two, next_two);
 }
 
-/* Two rows of eight 8-bit voxels. */
-SIMD __m128i near_two_rows(const char *from, int64_t row)
-{
-	int64_t rows[2];
-	memcpy(&rows[0], from, sizeof rows[0]);
-	memcpy(&rows[1], from + row, sizeof rows[1]);
-	return _mm_set_epi64x(rows[1], rows[0]);
-}
-
 /* Two rows of eight voxels each, their low bytes and, of 16 bits, their high ones less 128. */
 SIMD void near_rows(enum gz_voxel_type type, const char *from, int64_t row, __m128i *low,
 		    __m128i *high)

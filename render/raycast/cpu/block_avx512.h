@@ -152,15 +152,6 @@ struct near_blocks {
 	int exact; /* none is too great for a word */
 };
 
-/* Two rows of eight 8-bit voxels. */
-SIMD __m128i near_two_rows(const char *from, int64_t row)
-{
-	int64_t rows[2];
-	memcpy(&rows[0], from, sizeof rows[0]);
-	memcpy(&rows[1], from + row, sizeof rows[1]);
-	return _mm_set_epi64x(rows[1], rows[0]);
-}
-
 /* Four rows of eight 16-bit voxels, less 32768. */
 SIMD vi near_four_rows(const __m128i rows[4])
 {

@@ -30,6 +30,15 @@
 
 enum { BLOCK_EDGE = 4, BLOCK_VOXELS = BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE, BLOCK_WIDE = 8 };
 
+/* Two rows of eight 8-bit voxels. */
+SIMD __m128i near_two_rows(const char *from, int64_t row)
+{
+	int64_t rows[2];
+	memcpy(&rows[0], from, sizeof rows[0]);
+	memcpy(&rows[1], from + row, sizeof rows[1]);
+	return _mm_set_epi64x(rows[1], rows[0]);
+}
+
 #include SIMD_BLOCKS
 
 struct block {
