@@ -39,15 +39,13 @@ const struct gz_option gz_foveation_options[] = {
 	  .help = "acuity, contrast: how far from the gaze every pixel has a ray, even where "
 		  "pixels "
 		  "are finer than the eye resolves, degrees" },
-	/* Both presets are chosen by docs/results.md: objects beside the gaze are as calm as those
-	 * at it. */
+	/* Both presets are chosen by docs/results.md: objects beside the gaze are calmer. */
 	{ "foveation.acuity_far_deg", GZ_OPTION_DOUBLE, AT(acuity_far_deg), 0.1, 179, .preset = "5",
-	  .help = "acuity, contrast: how far from the gaze the distance of rays begins to grow "
-		  "less, "
-		  "degrees" },
+	  .help = "acuity, contrast: from how many degrees on the distance of rays grows less" },
 	{ "foveation.acuity_far_share", GZ_OPTION_DOUBLE, AT(acuity_far_share), 0, 1,
 	  .preset = "0.5",
-	  .help = "acuity, contrast: how much it grows there, as a share of acuity_slope" },
+	  .help = "acuity, contrast: how much the distance of rays grows there, as a share of "
+		  "acuity_slope" },
 	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
 	  .preset = "0.4",
 	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "

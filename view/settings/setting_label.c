@@ -75,7 +75,7 @@ static const struct {
 	{ "foveation.acuity_slope", "acuity slope, deg/deg" },
 	{ "foveation.acuity_foveal_deg", "finest cycle, degrees" },
 	{ "foveation.acuity_full_deg", "every pixel up to, degrees" },
-	{ "foveation.acuity_far_deg", "rays grow apart less from" },
+	{ "foveation.acuity_far_deg", "far from the gaze is, degrees" },
 	{ "foveation.acuity_far_share", "share of the slope there" },
 	{ "foveation.acuity_step_growth", "growth of steps" },
 	{ "foveation.contrast_threshold", "least contrast seen" },
