@@ -23,6 +23,7 @@
 
 /** Section [temporal] of a scene. */
 struct gz_temporal_params {
+	bool keep_rays; /**< gz_shot.keeps_rays; not while frames accumulate, as their rays move */
 	bool accumulate;
 	double weight; /**< share of earlier frames in pixels between rays while the camera moves,
 			  [0, 0.98] */

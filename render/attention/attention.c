@@ -331,11 +331,12 @@ bool gz_attention_settled(const struct gz_attention *attention)
 	return false;
 }
 
-bool gz_attention_spent(struct gz_attention *attention, double frame_ms)
+bool gz_attention_spent(struct gz_attention *attention, double frame_ms, bool kept)
 {
-	/* A frame in a saccade is cheaper than the frames that follow and says nothing about them.
-	 */
-	bool cheap = attention->focus.scale > 1 && frame_ms <= attention->params.budget_ms;
+	/* A frame in a saccade, or one that took rays of earlier frames, is cheaper than frames
+	 * that follow and says nothing about them. */
+	const bool partial = kept || attention->focus.scale > 1;
+	const bool cheap = partial && frame_ms <= attention->params.budget_ms;
 	return !cheap && gz_budget_step(&attention->budget, frame_ms);
 }
 

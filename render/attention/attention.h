@@ -137,9 +137,11 @@ double gz_attention_dead_band_deg(const struct gz_attention_params *params, doub
 /**
  * Report the time of the frame made by the last step. Does nothing without a budget.
  *
+ * @param kept  many of its rays are of earlier frames. If it is within the budget it does not
+ * count, since the next frame may have to cast all of them
  * @return true once, when even the coarsest plan exceeds the budget (gz_budget_step())
  */
-bool gz_attention_spent(struct gz_attention *attention, double frame_ms);
+bool gz_attention_spent(struct gz_attention *attention, double frame_ms, bool kept);
 
 /** Forget all frame times and start again at full detail, for instance after a change of scene. */
 void gz_attention_forget_spent(struct gz_attention *attention);

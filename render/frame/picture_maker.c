@@ -31,7 +31,7 @@ struct making {
 	const struct gz_picture_request *request;
 	struct gz_plan *plan;
 	struct gz_image *image;
-	bool accumulates, on_device;
+	bool accumulates, keeps_rays, on_device;
 	struct gz_picture_cost cost;
 };
 
@@ -229,6 +229,7 @@ static struct gz_shot shot_of(const struct making *making)
 		.settings = making->request->settings,
 		.plan = making->plan,
 		.refined = making->plan,
+		.keeps_rays = making->keeps_rays,
 	};
 }
 
@@ -362,6 +363,8 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 		.plan = request->plan ? request->plan : &maker->plan,
 		.image = request->image ? request->image : &maker->image,
 		.accumulates = request->temporal && request->temporal->accumulate,
+		.keeps_rays = request->temporal && request->temporal->keep_rays &&
+			      !request->temporal->accumulate,
 	};
 	const int64_t start_ns = gz_clock_now_ns();
 	enum gz_result result = make_plan(&making);

@@ -87,7 +87,7 @@ struct gz_picture_request {
 	struct gz_focus focus;            /**< where the plan is sharp: gz_focus_at() */
 	int width, height;                /**< of the picture, px */
 	double image_sampling_rate;       /**< rays per pixel edge; 0 means 1 */
-	/** Accumulation over pictures; NULL or without accumulate: none. */
+	/** What is taken from earlier pictures; NULL: nothing. */
 	const struct gz_temporal_params *temporal;
 	/** For a picture in strips: make only rows [top, top + rows) of the picture of width x
 	 *  height. rows = 0 makes all of it. */

@@ -27,13 +27,15 @@ enum cost {
 	COST_RECONSTRUCT,
 	COST_RAYS,
 	COST_SAMPLES,
+	COST_KEPT_RAYS,
 	COST_COUNT,
 };
 
 static const char *const cost_names[COST_COUNT] = {
-	[COST_TOTAL] = "total_ms",  [COST_PLAN] = "plan_ms", [COST_PREPARE] = "prepare_ms",
-	[COST_CAST] = "cast_ms",    [COST_RAYS] = "rays",    [COST_RECONSTRUCT] = "reconstruct_ms",
-	[COST_SAMPLES] = "samples",
+	[COST_TOTAL] = "total_ms",     [COST_PLAN] = "plan_ms",
+	[COST_PREPARE] = "prepare_ms", [COST_CAST] = "cast_ms",
+	[COST_RAYS] = "rays",          [COST_RECONSTRUCT] = "reconstruct_ms",
+	[COST_SAMPLES] = "samples",    [COST_KEPT_RAYS] = "kept_rays",
 };
 
 /* What calls have logged since the last one began: errors if there are any, else the last warning.
@@ -389,6 +391,7 @@ static void note_costs(struct gz_renderer *renderer, const struct gz_picture_cos
 	costs[COST_CAST] = cost->stats.cast_ms;
 	costs[COST_RECONSTRUCT] = cost->stats.reconstruct_ms;
 	costs[COST_RAYS] = (double)cost->stats.rays;
+	costs[COST_KEPT_RAYS] = (double)cost->stats.kept_rays;
 	costs[COST_SAMPLES] = (double)cost->stats.samples;
 }
 
@@ -434,6 +437,7 @@ enum gz_result gz_renderer_draw(struct gz_renderer *renderer, int width, int hei
 	const struct gz_scene_settings *settings = &renderer->scene.settings;
 	const struct gz_display display = display_of(renderer, width, height);
 	const struct gz_point centre = { 0.5f, 0.5f };
+	const struct gz_temporal_params temporal = { .keep_rays = settings->temporal.keep_rays };
 	const struct gz_picture_request request = {
 		.camera = &settings->camera,
 		.settings = &settings->rays,
@@ -444,6 +448,7 @@ enum gz_result gz_renderer_draw(struct gz_renderer *renderer, int width, int hei
 		.width = width,
 		.height = height,
 		.image_sampling_rate = settings->image_sampling_rate,
+		.temporal = &temporal,
 	};
 	struct gz_image *image = NULL;
 	struct gz_picture_cost cost;

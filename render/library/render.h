@@ -127,7 +127,9 @@ enum gz_result gz_renderer_draw(struct gz_renderer *renderer, int width, int hei
 
 /** The name of the cost with this number, from 0: "total_ms" (wall time of gz_renderer_draw()
  * without copying), "plan_ms", "prepare_ms" (what later pictures reuse), "cast_ms",
- * "reconstruct_ms", "rays" (cast) and "samples" (of the data). NULL after the last. Static text. */
+ * "reconstruct_ms", "rays", "samples" (of the data) and "kept_rays" (of the rays, those that an
+ * earlier picture cast while nothing but the gaze has changed). NULL after the last. Static text.
+ */
 const char *gz_renderer_cost_name(size_t number);
 
 /** A cost of the last picture; NaN before the first, and for a number beyond the last name. */

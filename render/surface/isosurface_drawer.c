@@ -62,6 +62,7 @@ static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
 		.camera = shot->camera,
 		.rays = shot->settings,
 		.plan = shot->plan,
+		.keeps_rays = shot->keeps_rays,
 		.hits = shot->hits,
 		.shades = shot->shades,
 		.shade_count = shot->shade_count,

@@ -91,7 +91,8 @@ struct gz_backend_params {
 
 /** What one frame cost. */
 struct gz_frame_stats {
-	uint64_t rays;            /**< cast, including those that miss everything */
+	uint64_t rays;            /**< of the plan, including those that miss everything */
+	uint64_t kept_rays;       /**< of them, those that an earlier picture cast */
 	uint64_t samples;         /**< interpolations of data */
 	double prepare_ms;        /**< work that later frames reuse; 0 = none was due */
 	double prepare_within_ms; /**< the part of prepare_ms that draw() itself took */
@@ -118,6 +119,9 @@ struct gz_shot {
 	 *  seen there, from 0 for the nearest to 255 for the farthest of this range. Where nothing
 	 *  is seen it is 128. NULL: 255. */
 	const struct gz_ray_depths *depths;
+	/** Rays that an earlier picture cast may be taken, if nothing that decides them has
+	 * changed. The picture is the same, bit for bit. */
+	bool keeps_rays;
 	/** What others have drawn into the picture; NULL: nothing. GZ_SHARES_AS_OPAQUE: put in what
 	 *  lies nearer. GZ_SHARES_AS_CLEAR: end the rays there, in front of these pixels. */
 	struct gz_ray_hits *hits;

@@ -447,7 +447,7 @@ static void budget_makes_the_whole_plan_coarser_and_saccades_more_so(void **stat
 	for (int i = 0; i < 3; i++) {
 		struct gz_focus focus = step_event(GZ_EVENT_FIXATION, 0);
 		assert_true(focus.scale == 1);
-		assert_false(gz_attention_spent(&attention, 20));
+		assert_false(gz_attention_spent(&attention, 20, false));
 	}
 	struct gz_focus still = step_event(GZ_EVENT_FIXATION, 0);
 	assert_true(still.scale > 1.4 && still.scale < 4);
@@ -470,16 +470,39 @@ static void cheap_frames_of_saccades_do_not_make_the_plan_finer(void **state)
 	gz_attention_set_params(&attention, &params);
 	for (int i = 0; i < 3; i++) {
 		step_event(GZ_EVENT_FIXATION, 0);
-		gz_attention_spent(&attention, 20);
+		gz_attention_spent(&attention, 20, false);
 	}
 	double scale = step_event(GZ_EVENT_FIXATION, 0).scale;
 	for (int i = 0; i < 200; i++) {
 		double way = i % 4 ? 20 : -20;
 		struct gz_focus focus =
 			step_event(i % 4 ? GZ_EVENT_SACCADE : GZ_EVENT_FIXATION, way);
-		gz_attention_spent(&attention, focus.scale > scale ? 1 : 9);
+		gz_attention_spent(&attention, focus.scale > scale ? 1 : 9, false);
 	}
 	assert_true(step_event(GZ_EVENT_FIXATION, 0).scale == scale);
+}
+
+static void frames_with_kept_rays_do_not_make_the_plan_finer(void **state)
+{
+	(void)state;
+	params.budget_ms = 10;
+	gz_attention_set_params(&attention, &params);
+	for (int i = 0; i < 3; i++) {
+		step_event(GZ_EVENT_FIXATION, 0);
+		gz_attention_spent(&attention, 20, false);
+	}
+	const double scale = step_event(GZ_EVENT_FIXATION, 0).scale;
+	for (int i = 0; i < 200; i++)
+		gz_attention_spent(&attention, 1, true);
+	assert_true(step_event(GZ_EVENT_FIXATION, 0).scale == scale);
+	/* Cast as a whole they do, and too slow they count in any case. */
+	for (int i = 0; i < 200; i++)
+		gz_attention_spent(&attention, 1, false);
+	const double finer = step_event(GZ_EVENT_FIXATION, 0).scale;
+	assert_true(finer < scale);
+	for (int i = 0; i < 3; i++)
+		gz_attention_spent(&attention, 40, true);
+	assert_true(step_event(GZ_EVENT_FIXATION, 0).scale > finer);
 }
 
 static void presets_parse_and_states_have_names(void **state)
@@ -524,6 +547,7 @@ TEST_SUITE(attention)
 		cmocka_unit_test_setup(budget_makes_the_whole_plan_coarser_and_saccades_more_so,
 				       begin),
 		cmocka_unit_test_setup(cheap_frames_of_saccades_do_not_make_the_plan_finer, begin),
+		cmocka_unit_test_setup(frames_with_kept_rays_do_not_make_the_plan_finer, begin),
 		cmocka_unit_test_setup(presets_parse_and_states_have_names, begin),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

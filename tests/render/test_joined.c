@@ -327,6 +327,33 @@ static void objects_come_and_go(void **state)
 	joined_take_down(&joined);
 }
 
+/* Rays end where the other technique has met something, so they are not kept. */
+static void rays_that_meet_other_techniques_are_cast_each_time(void **state)
+{
+	(void)state;
+	struct joined joined;
+	joined_set_up(clouds, (const double[3]) { 0, 0, 0 }, &joined);
+	joined_draw(&(struct gz_backend_params) { .threads = 2 }, 2, &joined);
+	struct gz_image before = joined_copy(joined.image);
+	const struct gz_temporal_params temporal = gz_temporal_default();
+	struct gz_picture_request request = joined_request(&joined);
+	request.temporal = &temporal;
+	for (int i = 0; i < 4; i++) {
+		if (i == 3) /* the ball is another one, and the volume the same */
+			joined_move_ball((const double[3]) { 0, 8, 0 }, &joined);
+		assert_int_equal(gz_picture_maker_show(joined.maker, joined.objects, 2), GZ_OK);
+		assert_int_equal(
+			gz_picture_make(joined.maker, &request, &joined.image, &joined.cost),
+			GZ_OK);
+		assert_true(joined.cost.stats.kept_rays == 0);
+		const bool same = memcmp(before.pixels, joined.image->pixels,
+					 (size_t)WIDTH * HEIGHT * 4) == 0;
+		assert_true(same == (i < 3));
+	}
+	gz_image_free(&before);
+	joined_take_down(&joined);
+}
+
 TEST_SUITE(joined)
 {
 	const struct CMUnitTest tests[] = {
@@ -339,6 +366,7 @@ TEST_SUITE(joined)
 		cmocka_unit_test(accumulation_starts_again_when_any_technique_changes),
 		cmocka_unit_test(graphics_device_draws_the_picture_of_the_cpu),
 		cmocka_unit_test(objects_come_and_go),
+		cmocka_unit_test(rays_that_meet_other_techniques_are_cast_each_time),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

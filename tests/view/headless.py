@@ -21,11 +21,11 @@ SCENE = write_scene(PLACE.name, SCENES)
 SURFACE = ("--technique", "isosurface", "--isovalue", "0.5")
 METHODS = ("standard", "mdc", "ddc", "acuity")
 KEYS = (
-    "method backend width height rays samples plan_ms cast_ms reconstruct_ms total_ms gaze "
+    "method backend width height rays kept_rays samples plan_ms cast_ms reconstruct_ms total_ms gaze "
     "gaze_age_ms attention focus scale widen budget_ms budget"
 ).split()
 LINE = re.compile(
-    r"(\w+) (\d+)x(\d+) rays (\d+) samples (\d+) plan ([\d.]+) cast ([\d.]+) reconstruct ([\d.]+) "
+    r"(\w+) (\d+)x(\d+) rays (\d+) kept (\d+) samples (\d+) plan ([\d.]+) cast ([\d.]+) reconstruct ([\d.]+) "
     r"total ([\d.]+) ms gaze age (-|[\d.]+ ms)$"
 )
 
@@ -69,6 +69,17 @@ class Headless(unittest.TestCase):
         self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
         self.assertIn(word, done.stderr)
 
+    def test_camera_at_rest_casts_no_ray_twice(self):
+        for keep in ("yes", "no"):
+            self.good("--frames", 3, "--method", "acuity", "--temporal.keep_rays=" + keep, "--stats",
+                      self.path(keep), "--out", self.path(keep + "-%d.png"))
+        kept, bare = self.frames("yes"), self.frames("no")
+        self.assertEqual([frame["kept_rays"] for frame in kept], [0, 0, kept[2]["rays"]])
+        self.assertEqual([frame["kept_rays"] for frame in bare], [0, 0, 0])
+        self.assertEqual((kept[2]["samples"], bare[2]["samples"]), (0, bare[0]["samples"]))
+        for i in range(3):
+            self.assertEqual(read_png(self.path("yes-%d.png" % i)), read_png(self.path("no-%d.png" % i)))
+
     def test_each_method_writes_pictures_lines_and_statistics(self):
         pictures = {}
         for method in METHODS:
@@ -86,7 +97,8 @@ class Headless(unittest.TestCase):
                 self.assertEqual(said[1], method)
                 self.assertEqual(frame["method"], method)
                 self.assertEqual((frame["width"], frame["height"]), (96, 64))
-                self.assertEqual((int(said[4]), int(said[5])), (frame["rays"], frame["samples"]))
+                self.assertEqual((int(said[4]), int(said[6])), (frame["rays"], frame["samples"]))
+                self.assertEqual((int(said[5]), frame["kept_rays"]), (0, 0), "the camera turned")
                 self.assertGreater(frame["samples"], 0)
                 parts = frame["plan_ms"] + frame["cast_ms"] + frame["reconstruct_ms"]
                 self.assertLessEqual(parts, frame["total_ms"] + 0.01)

@@ -19,6 +19,7 @@ static const struct gz_frame_record frame = {
 	.width = 640,
 	.height = 360,
 	.rays = 12345,
+	.kept_rays = 2345,
 	.samples = 9876543210,
 	.plan_ms = 0.25,
 	.cast_ms = 10.5,
@@ -96,7 +97,8 @@ static void file_is_complete_after_each_frame(void **state)
 	assert_int_equal(entries, 3);
 	assert_non_null(strstr(
 		text, "{\"method\": \"acuity\", \"backend\": \"cpu\", \"width\": 640, \"height\": "
-		      "360, \"rays\": 12345, \"samples\": 9876543210, \"plan_ms\": 0.25, "
+		      "360, \"rays\": 12345, \"kept_rays\": 2345, \"samples\": 9876543210, "
+		      "\"plan_ms\": 0.25, "
 		      "\"cast_ms\": 10.5, \"reconstruct_ms\": 1.25, \"total_ms\": 12.125, "
 		      "\"gaze\": [0.25, -0.5], \"gaze_age_ms\": 3.5, \"attention\": "
 		      "\"fixation\", \"focus\": [0.25, -0.5], \"scale\": 1.5, \"widen\": 0.25, "
@@ -161,8 +163,9 @@ static void line_has_the_values_of_the_file(void **state)
 	(void)state;
 	char line[512];
 	gz_frame_record_print(&frame, line, sizeof line);
-	assert_string_equal(line, "acuity 640x360 rays 12345 samples 9876543210 plan 0.25 cast "
-				  "10.50 reconstruct 1.25 total 12.12 ms gaze age 3.5 ms");
+	assert_string_equal(line,
+			    "acuity 640x360 rays 12345 kept 2345 samples 9876543210 plan 0.25 cast "
+			    "10.50 reconstruct 1.25 total 12.12 ms gaze age 3.5 ms");
 	struct gz_frame_record blind = frame;
 	blind.age_known = false;
 	gz_frame_record_print(&blind, line, sizeof line);

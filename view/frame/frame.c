@@ -1018,6 +1018,7 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 	record->cast_ms = cost.stats.cast_ms;
 	record->reconstruct_ms = cost.stats.reconstruct_ms;
 	record->rays = cost.stats.rays;
+	record->kept_rays = cost.stats.kept_rays;
 	record->bricks_coming = cost.stats.bricks_coming;
 	record->samples = cost.stats.samples;
 	record->kept = cost.kept;
@@ -1054,11 +1055,17 @@ static const char *budget_state(const struct gz_frame_maker *maker,
 	return gz_budget_state_name(budget->state);
 }
 
+/* A frame does not count for the budget if more than 1/MUCH_KEPT of its rays were kept. Chosen: it
+ * would have taken up to a third longer. */
+enum { MUCH_KEPT = 4 };
+
 /* The budget covers rays and pixels only, not what later frames reuse, and not what is
  * drawn or written afterwards. Times of another method or size do not count. */
 static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_request *request,
-		       double total_ms)
+		       const struct gz_frame_record *record)
 {
+	const double spent_ms = record->total_ms - record->prepare_ms;
+	const bool kept = record->kept_rays > record->rays / MUCH_KEPT;
 	int method = request->settings->foveation.method;
 	const struct gz_plan *plan = gz_picture_maker_plan(maker->pictures);
 	bool same = maker->spent.method == method && maker->spent.width == plan->width &&
@@ -1072,14 +1079,14 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 		warn_standard_ignores_budget(maker);
 		return;
 	}
-	if (gz_attention_spent(&maker->attention, total_ms))
+	if (gz_attention_spent(&maker->attention, spent_ms, kept))
 		gz_warn(maker->log,
 			"attention.budget_ms %g cannot be kept: %s took %.1f ms with its "
 			"coarsest "
 			"plan; raise it, lower the size or render.ray_sampling_rate, or "
 			"try "
 			"another method",
-			maker->attention.params.budget_ms, gz_method_names[method], total_ms);
+			maker->attention.params.budget_ms, gz_method_names[method], spent_ms);
 }
 
 static struct gz_frame_record begin_record(const struct gz_frame_maker *maker,
@@ -1113,7 +1120,7 @@ enum gz_result gz_frame_make(struct gz_frame_maker *maker, const struct gz_frame
 	maker->last.rays = maker->rays;
 	maker->last.width = request->width;
 	maker->last.height = request->height;
-	tell_spent(maker, request, record.total_ms - record.prepare_ms);
+	tell_spent(maker, request, &record);
 	record.budget = budget_state(maker, &record);
 	record.backend = gz_frame_backend(maker); /* cpu may have taken over */
 	*out_record = record;

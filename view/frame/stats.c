@@ -35,11 +35,12 @@ void gz_frame_record_print(const struct gz_frame_record *record, char *text, siz
 	if (record->age_known)
 		snprintf(age, sizeof age, "%.1f ms", record->gaze_age_ms);
 	snprintf(text, size,
-		 "%s %dx%d rays %llu samples %llu plan %.2f cast %.2f reconstruct %.2f total %.2f "
+		 "%s %dx%d rays %llu kept %llu samples %llu plan %.2f cast %.2f reconstruct %.2f "
+		 "total %.2f "
 		 "ms gaze age %s",
 		 record->method, record->width, record->height, (unsigned long long)record->rays,
-		 (unsigned long long)record->samples, record->plan_ms, record->cast_ms,
-		 record->reconstruct_ms, record->total_ms, age);
+		 (unsigned long long)record->kept_rays, (unsigned long long)record->samples,
+		 record->plan_ms, record->cast_ms, record->reconstruct_ms, record->total_ms, age);
 }
 
 /* JSON has neither NaN nor infinity. */
@@ -64,13 +65,14 @@ static json_t *point_json(bool known, struct gz_point point)
 static json_t *record_json(const struct gz_frame_record *record)
 {
 	return json_pack(
-		"{s:s, s:s, s:i, s:i, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, s:o, "
+		"{s:s, s:s, s:i, s:i, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, "
+		"s:o, "
 		"s:o, s:s}",
 		"method", record->method, "backend", record->backend, "width", record->width,
-		"height", record->height, "rays", (json_int_t)record->rays, "samples",
-		(json_int_t)record->samples, "plan_ms", milliseconds_json(record->plan_ms),
-		"cast_ms", milliseconds_json(record->cast_ms), "reconstruct_ms",
-		milliseconds_json(record->reconstruct_ms), "total_ms",
+		"height", record->height, "rays", (json_int_t)record->rays, "kept_rays",
+		(json_int_t)record->kept_rays, "samples", (json_int_t)record->samples, "plan_ms",
+		milliseconds_json(record->plan_ms), "cast_ms", milliseconds_json(record->cast_ms),
+		"reconstruct_ms", milliseconds_json(record->reconstruct_ms), "total_ms",
 		milliseconds_json(record->total_ms), "gaze",
 		point_json(record->gaze_known, record->gaze), "gaze_age_ms",
 		milliseconds_json(record->age_known ? record->gaze_age_ms : NAN), "attention",

@@ -21,6 +21,7 @@ struct gz_frame_record {
 	const char *backend;
 	int width, height;
 	uint64_t rays;
+	uint64_t kept_rays; /**< of them, those that an earlier frame cast: temporal.keep_rays */
 	uint64_t bricks_coming; /**< see struct gz_frame_stats */
 	uint64_t samples;
 	double plan_ms;
@@ -41,8 +42,8 @@ struct gz_frame_record {
 
 /**
  * Print the frame as one line without newline, such as
- * "acuity 1920x1080 rays 216440 samples 9631187 plan 0.21 cast 68.10 reconstruct 4.90 total 73.30
- * ms gaze age 3.1 ms". An unknown age is "-". The text is cut to @p size bytes.
+ * "acuity 1920x1080 rays 216440 kept 0 samples 9631187 plan 0.21 cast 68.10 reconstruct 4.90 total
+ * 73.30 ms gaze age 3.1 ms". An unknown age is "-". The text is cut to @p size bytes.
  */
 void gz_frame_record_print(const struct gz_frame_record *record, char *text, size_t size);
 

@@ -253,6 +253,11 @@ static bool with_the_past(const struct gz_scene_settings *settings)
 	return settings->temporal.accumulate;
 }
 
+static bool without_the_past(const struct gz_scene_settings *settings)
+{
+	return !settings->temporal.accumulate;
+}
+
 static bool with_a_split(const struct gz_scene_settings *settings)
 {
 	return settings->view.compare == GZ_COMPARE_SPLIT;
@@ -322,6 +327,7 @@ static const struct {
 	{ "attention.budget_ms", with_a_scale },
 	{ "attention.importance", with_importance },
 	{ "attention.", with_the_gaze },
+	{ "temporal.keep_rays", without_the_past },
 	{ "temporal.weight", with_the_past },
 	{ "view.compare_with", by_illustrate },
 	{ "view.split", with_a_split },

@@ -18,6 +18,8 @@
 #include "render/raycast/shared/detail.h"
 #include "render/raycast/shared/lighting.h"
 #include "render/raycast/shared/preintegration.h"
+#include "render/raycast/shared/ray_content.h"
+#include "render/reconstruct/cpu/kept_tiles.h"
 #include "render/reconstruct/cpu/lattice.h"
 #include "render/reconstruct/cpu/reconstruct.h"
 
@@ -78,9 +80,10 @@ void gz_cast_fill_table(const struct gz_transfer_table *table, struct gz_cast *c
 	cast->extinction = table->entries;
 }
 
-/* A worker's own count, in a cache line of its own. */
-struct sample_count {
+/* A worker's own counts, in a cache line of their own. */
+struct cast_count {
 	alignas(64) uint64_t samples;
+	uint64_t kept_rays;
 };
 
 struct cpu_raycaster {
@@ -105,7 +108,9 @@ struct cpu_raycaster {
 	struct gz_volume_shade shade;     /* on others in the picture */
 	struct gz_lattices lattices;
 	struct gz_contrasts contrasts; /* of the tiles of a round */
-	struct sample_count counts[GZ_WORKERS_MAX];
+	struct gz_ray_content content; /* of the last picture */
+	struct gz_kept_tiles kept;
+	struct cast_count counts[GZ_WORKERS_MAX];
 	char description[64];
 };
 
@@ -125,8 +130,9 @@ struct cast_job {
 	size_t first;                   /* tile of this round */
 	const struct gz_ray_hits *hits; /* where rays end; NULL: nowhere */
 	struct gz_lattices *lattices;
+	struct gz_kept_tiles *kept; /* NULL: every ray is cast */
 	gz_cast_tile_function *tile;
-	struct sample_count *counts;
+	struct cast_count *counts;
 	struct tile_offsets offsets[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
 	int jitter; /* seed */
 	bool lit;   /* surfaces */
@@ -154,6 +160,7 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	gz_cube_pictures_free(&cpu->pictures);
 	gz_lattices_free(&cpu->lattices);
 	gz_contrasts_free(&cpu->contrasts);
+	gz_kept_tiles_free(&cpu->kept);
 	free(cpu->step_tables);
 	free(cpu->table);
 	gz_preintegration_free(&cpu->preintegration);
@@ -217,6 +224,7 @@ static enum gz_result cpu_set_volume(struct gz_raycaster *raycaster, const struc
 	struct cpu_raycaster *cpu = cpu_of(raycaster);
 	cpu->volume = NULL;
 	cpu->has_transfer = false;
+	gz_ray_content_forget(&cpu->content);
 	gz_faded_light_forget(&cpu->light);
 	gz_brick_stream_forget(&cpu->stream);
 	/* Gathers take signed indices of 32 bits. */
@@ -274,6 +282,7 @@ static enum gz_result cpu_set_transfer(struct gz_raycaster *raycaster,
 	struct cpu_raycaster *cpu = cpu_of(raycaster);
 	if (!cpu->volume)
 		return GZ_ERR_INVAL;
+	gz_ray_content_forget(&cpu->content);
 	const int entries = cpu->has_transfer ? cpu->table->count : 0;
 	const bool same_but_emphasis = gz_faded_light_set_transfer(&cpu->light, transfer);
 	gz_transfer_table_bake(transfer, cpu->volume, cpu->table);
@@ -475,14 +484,29 @@ static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_cam
 	return GZ_OK;
 }
 
-static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, int worker)
+/* Cast a tile's rays. */
+static void cast_rays(const struct cast_job *job, const struct gz_tile *tile, int worker,
+		      uint32_t pixels[GZ_TILE_RAYS])
 {
 	struct gz_cast_tile rays;
-	uint32_t pixels[GZ_TILE_RAYS];
 	fill_cast_tile(job, tile, &rays);
 	fill_cast_hits(job, tile, &rays);
 	job->counts[worker].samples += job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
-	gz_lattices_store(job->lattices, job->plan, tile, rays.active, pixels);
+}
+
+/* Cast a tile's rays, or take those of an earlier picture. */
+static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, int worker)
+{
+	uint32_t own[GZ_TILE_RAYS], *pixels = own;
+	bool known = false;
+	if (job->kept)
+		pixels = gz_kept_tiles_take(job->kept, job->plan, tile, &known);
+	const uint32_t active = gz_plan_tile_active(job->plan, tile);
+	if (known)
+		job->counts[worker].kept_rays += (uint64_t)__builtin_popcount(active);
+	else
+		cast_rays(job, tile, worker, pixels);
+	gz_lattices_store(job->lattices, job->plan, tile, active, pixels);
 }
 
 static void cast_part(void *user, size_t part, int worker)
@@ -501,12 +525,12 @@ static void cast_tiles(struct cpu_raycaster *cpu, struct cast_job *job)
 		       (job->plan->tile_count - job->first + TILES_A_PART - 1) / TILES_A_PART);
 }
 
-static uint64_t sum_samples(const struct cpu_raycaster *cpu)
+static void sum_counts(const struct cpu_raycaster *cpu, struct gz_frame_stats *stats)
 {
-	uint64_t samples = 0;
-	for (int i = 0; i < gz_workers_count(cpu->workers); i++)
-		samples += cpu->counts[i].samples;
-	return samples;
+	for (int i = 0; i < gz_workers_count(cpu->workers); i++) {
+		stats->samples += cpu->counts[i].samples;
+		stats->kept_rays += cpu->counts[i].kept_rays;
+	}
 }
 
 /* Refine the plan where the last round's rays differ, and cast the new tiles, round by round. */
@@ -612,6 +636,20 @@ static enum gz_result light_casts(struct cpu_raycaster *cpu, const struct gz_sho
 	return GZ_OK;
 }
 
+/* The tiles of earlier pictures that this one may take; NULL: none. Bricks arrive, and what others
+ * show may change, while the volume's own settings stay the same. */
+static struct gz_kept_tiles *find_kept_tiles(struct cpu_raycaster *cpu, const struct gz_shot *shot,
+					     const struct gz_ray_frame *ray_frame)
+{
+	if (!shot->keeps_rays || cpu->volume->bricks || shot->hits || shot->shade_count > 0) {
+		gz_kept_tiles_free(&cpu->kept);
+		return NULL;
+	}
+	const uint64_t content = gz_ray_content_follow(&cpu->content, shot->plan, shot->settings,
+						       ray_frame, shot->depths);
+	return gz_kept_tiles_begin(&cpu->kept, shot->plan, content, 1) ? &cpu->kept : NULL;
+}
+
 static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
 			       struct gz_image *image, struct gz_frame_stats *out_stats)
 {
@@ -666,6 +704,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	surround_casts(cpu, rays, &job);
 	deepen_casts(shot, &job);
 	fill_tile_offsets(&job);
+	job.kept = find_kept_tiles(cpu, shot, &ray_frame);
 	memset(cpu->counts, 0, sizeof cpu->counts);
 	cast_tiles(cpu, &job);
 	if (shot->refined && plan->refines)
@@ -675,10 +714,9 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	const int64_t cast_ns = gz_clock_now_ns();
 	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,
 		       gz_image_words(image));
-	if (out_stats)
+	if (out_stats) {
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
-			.samples = sum_samples(cpu),
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
 			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
@@ -686,6 +724,8 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 			.gpu_ms = NAN,
 			.bricks_coming = cpu->volume->bricks ? cpu->bricks_coming : 0,
 		};
+		sum_counts(cpu, out_stats);
+	}
 	return GZ_OK;
 }
 

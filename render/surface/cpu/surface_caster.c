@@ -13,6 +13,8 @@
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cpu_raycaster.h"
 #include "render/raycast/shared/macrocells.h"
+#include "render/raycast/shared/ray_content.h"
+#include "render/reconstruct/cpu/kept_tiles.h"
 #include "render/reconstruct/cpu/lattice.h"
 #include "render/reconstruct/cpu/reconstruct.h"
 #include "render/surface/cpu/surface_cast.h"
@@ -61,6 +63,9 @@ struct gz_surface_caster {
 	struct gz_surface_cast own; /* what the shade of the picture reads */
 	double shade_ms;            /* for surfaces, since the last picture */
 	struct gz_lattices lattices[PLANE_COUNT];
+	struct gz_ray_content content; /* of the last picture */
+	uint64_t content_revision;     /* of its surfaces */
+	struct gz_kept_tiles kept;
 	char description[64];
 };
 
@@ -72,6 +77,8 @@ struct surface_job {
 	double coherent_spacing;      /* greatest, px: gz_surface_tile.coherent */
 	struct gz_ray_hits *hits;     /* NULL: not wanted */
 	struct gz_lattices *lattices; /* PLANE_COUNT; those without a plane are not filled */
+	struct gz_kept_tiles *kept;   /* NULL: every ray is cast */
+	atomic_uint_fast64_t kept_rays;
 	uint32_t *words[PLANE_COUNT]; /* NULL: not wanted */
 };
 
@@ -152,6 +159,7 @@ enum gz_result gz_surface_caster_show(struct gz_surface_caster *caster,
 	free(caster->listed);
 	caster->listed = listed;
 	caster->tree_current = false;
+	gz_ray_content_forget(&caster->content);
 	return GZ_OK;
 }
 
@@ -393,37 +401,72 @@ static void fill_field(const struct gz_surface_caster *caster, struct gz_surface
 	fill_field_voxels(&caster->field, &field->voxels);
 }
 
+static void cast_surface_rays(const struct surface_job *job, const struct gz_tile *tile,
+			      uint32_t active, struct gz_surface_hits *out_hits)
+{
+	const struct gz_plan *plan = job->plan;
+	const int spacing = plan->layers[tile->layer].spacing;
+	struct gz_surface_tile rays = { .active = active,
+					.step = plan->steps[tile->step],
+					.coherent = spacing <= job->coherent_spacing };
+	for (int k = 0; k < GZ_SURFACE_RAYS; k++) {
+		const int column = gz_tile_columns[tile->pattern][k];
+		rays.x[k] = (float)(tile->x - plan->view.shift[0] + column * spacing);
+		rays.y[k] = (float)(tile->y - plan->view.shift[1] + gz_tile_rows[k] * spacing);
+	}
+	job->tile(&job->cast, &rays, out_hits);
+}
+
+_Static_assert(sizeof(struct gz_surface_hits) ==
+		       PLANE_COUNT * GZ_KEPT_TILE_WORDS * sizeof(uint32_t),
+	       "hits are kept as they are");
+
+/* Cast a tile's rays, or take those of an earlier picture. Returns how many were taken. */
+static uint64_t find_surface_hits(const struct surface_job *job, const struct gz_tile *tile,
+				  uint32_t active, struct gz_surface_hits *out_hits)
+{
+	bool known = false;
+	uint32_t *kept = NULL;
+	if (job->kept)
+		kept = gz_kept_tiles_take(job->kept, job->plan, tile, &known);
+	if (known) {
+		memcpy(out_hits, kept, sizeof *out_hits);
+		return (uint64_t)__builtin_popcount(active);
+	}
+	cast_surface_rays(job, tile, active, out_hits);
+	if (kept)
+		memcpy(kept, out_hits, sizeof *out_hits);
+	return 0;
+}
+
+static uint64_t cast_surface_tile(const struct surface_job *job, size_t number)
+{
+	const struct gz_tile *tile = &job->plan->tiles[number];
+	const uint32_t active = gz_plan_tile_active(job->plan, tile);
+	struct gz_surface_hits hits;
+	uint32_t depth[GZ_SURFACE_RAYS];
+	const uint64_t kept_rays = find_surface_hits(job, tile, active, &hits);
+	if (job->hits)
+		merge_hits(&hits, job->cast.frame.around.kind, number, job->hits);
+	memcpy(depth, hits.depth, sizeof depth);
+	const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
+	for (int plane = 0; plane < PLANE_COUNT; plane++)
+		if (job->words[plane])
+			gz_lattices_store(&job->lattices[plane], job->plan, tile, active,
+					  found[plane]);
+	return kept_rays;
+}
+
 static void cast_surface_part(void *user, size_t part, int worker)
 {
-	const struct surface_job *job = user;
-	const struct gz_plan *plan = job->plan;
+	struct surface_job *job = user;
 	const size_t from = part * TILES_A_PART;
 	const size_t end = from + TILES_A_PART;
+	uint64_t kept_rays = 0;
 	(void)worker;
-	for (size_t i = from; i < end && i < plan->tile_count; i++) {
-		const struct gz_tile *tile = &plan->tiles[i];
-		const int spacing = plan->layers[tile->layer].spacing;
-		struct gz_surface_tile rays = { .active = gz_plan_tile_active(plan, tile),
-						.step = plan->steps[tile->step],
-						.coherent = spacing <= job->coherent_spacing };
-		struct gz_surface_hits hits;
-		uint32_t depth[GZ_SURFACE_RAYS];
-		for (int k = 0; k < GZ_SURFACE_RAYS; k++) {
-			const int column = gz_tile_columns[tile->pattern][k];
-			rays.x[k] = (float)(tile->x - plan->view.shift[0] + column * spacing);
-			rays.y[k] =
-				(float)(tile->y - plan->view.shift[1] + gz_tile_rows[k] * spacing);
-		}
-		job->tile(&job->cast, &rays, &hits);
-		if (job->hits)
-			merge_hits(&hits, job->cast.frame.around.kind, i, job->hits);
-		memcpy(depth, hits.depth, sizeof depth);
-		const uint32_t *const found[PLANE_COUNT] = { hits.pixels, depth, hits.ids };
-		for (int plane = 0; plane < PLANE_COUNT; plane++)
-			if (job->words[plane])
-				gz_lattices_store(&job->lattices[plane], plan, tile, rays.active,
-						  found[plane]);
-	}
+	for (size_t i = from; i < end && i < job->plan->tile_count; i++)
+		kept_rays += cast_surface_tile(job, i);
+	atomic_fetch_add_explicit(&job->kept_rays, kept_rays, memory_order_relaxed);
 }
 
 /* Make room for the picture and the planes that are wanted. */
@@ -522,6 +565,24 @@ enum gz_result gz_surface_caster_shade(struct gz_surface_caster *caster,
 	return GZ_OK;
 }
 
+/* The tiles of earlier pictures that this one may take; NULL: none. After the surfaces are made. */
+static struct gz_kept_tiles *find_kept_tiles(struct gz_surface_caster *caster,
+					     const struct gz_surface_shot *shot,
+					     const struct gz_ray_frame *frame)
+{
+	if (!shot->keeps_rays || shot->hits || shot->shade_count > 0) {
+		gz_kept_tiles_free(&caster->kept);
+		return NULL;
+	}
+	if (caster->content_revision != caster->revision)
+		gz_ray_content_forget(&caster->content);
+	caster->content_revision = caster->revision;
+	const uint64_t content =
+		gz_ray_content_follow(&caster->content, shot->plan, shot->rays, frame, NULL);
+	return gz_kept_tiles_begin(&caster->kept, shot->plan, content, PLANE_COUNT) ? &caster->kept
+										    : NULL;
+}
+
 enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 				      const struct gz_surface_shot *shot, struct gz_image *image,
 				      const struct gz_surface_planes *planes,
@@ -554,6 +615,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	caster->shade_ms = 0;
 	fill_surface_cast(caster, shot, &frame, &job.cast);
 	job.coherent_spacing = coherent_spacing(caster, &job.cast.frame);
+	job.kept = find_kept_tiles(caster, shot, &frame);
 	gz_workers_run(caster->workers, cast_surface_part, &job,
 		       (plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
 	const int64_t cast_ns = gz_clock_now_ns();
@@ -561,6 +623,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	if (out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
+			.kept_rays = atomic_load(&job.kept_rays),
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
 			.cast_ms = gz_ns_to_ms(cast_ns - prepared_ns),
@@ -626,6 +689,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 	free(self->normals);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);
+	gz_kept_tiles_free(&self->kept);
 	free(self);
 	*caster = NULL;
 }

@@ -1,0 +1,381 @@
+/* Rays of earlier pictures: taking them saves casting and changes no bit, and whatever decides a
+ * ray makes it be cast again. */
+#include "suite.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "render/frame/picture_maker.h"
+#include "render/plan/method.h"
+#include "render/raycast/raycast.h"
+#include "render/surface/isosurface_technique.h"
+#include "small_scene.h"
+
+enum { WIDTH = 280, HEIGHT = 200 };
+
+/* One maker keeps rays, the other does not. */
+enum { KEPT, BARE, MAKERS };
+
+struct stage {
+	struct small_scene scene;
+	struct gz_display display;
+	struct gz_object object;
+	struct gz_temporal_params temporal;
+	struct gz_picture_request request; /* of both */
+	struct gz_picture_maker *makers[MAKERS];
+	struct gz_plan plans[MAKERS];
+	struct gz_image images[MAKERS];
+	struct gz_picture_cost cost; /* of the last picture that kept rays */
+	enum gz_result result;       /* of both */
+};
+
+static void show(struct stage *stage)
+{
+	for (int i = 0; i < MAKERS; i++)
+		assert_int_equal(gz_picture_maker_show(stage->makers[i], &stage->object, 1), GZ_OK);
+}
+
+static void set_up(const struct gz_technique *technique, struct stage *stage)
+{
+	const struct gz_picture_maker_params params = { .backend = "cpu",
+							.backend_params = { .threads = 2 } };
+	*stage = (struct stage) { .scene = small_scene_waves(40, 48, 36, GZ_VOXEL_U8),
+				  .display = gz_display_default(WIDTH, HEIGHT),
+				  .temporal = gz_temporal_default() };
+	stage->object = (struct gz_object) {
+		.technique = technique,
+		.id = 1,
+		.volume = &stage->scene.volume,
+		.transfer = &stage->scene.transfer,
+	};
+	stage->scene.rays.surface.isovalue = 100;
+	/* So that a small picture has wide spacings and long steps. */
+	stage->scene.foveation.acuity_slope = 0.1;
+	stage->scene.foveation.acuity_far_share = 1;
+	stage->request = (struct gz_picture_request) {
+		.camera = &stage->scene.camera,
+		.settings = &stage->scene.rays,
+		.foveation = &stage->scene.foveation,
+		.display = &stage->display,
+		.focus = gz_focus_at(stage->scene.gaze),
+		.width = WIDTH,
+		.height = HEIGHT,
+	};
+	for (int i = 0; i < MAKERS; i++)
+		assert_int_equal(gz_picture_maker_create(&params, NULL, &stage->makers[i]), GZ_OK);
+	show(stage);
+}
+
+static void take_down(struct stage *stage)
+{
+	for (int i = 0; i < MAKERS; i++) {
+		gz_picture_maker_destroy(&stage->makers[i]);
+		gz_plan_free(&stage->plans[i]);
+		gz_image_free(&stage->images[i]);
+	}
+	small_scene_free(&stage->scene);
+}
+
+/* Make the picture of the request with rays kept and without, and compare them. */
+static void make_both(struct stage *stage, const char *what)
+{
+	for (int i = 0; i < MAKERS; i++) {
+		struct gz_picture_request request = stage->request;
+		struct gz_picture_cost cost = { 0 };
+		struct gz_image *image = NULL;
+		request.temporal = i == KEPT ? &stage->temporal : NULL;
+		request.plan = &stage->plans[i];
+		request.image = &stage->images[i];
+		const enum gz_result result =
+			gz_picture_make(stage->makers[i], &request, &image, &cost);
+		if (i == KEPT) {
+			stage->cost = cost;
+			stage->result = result;
+		} else {
+			assert_int_equal(result, stage->result);
+			assert_true(cost.stats.kept_rays == 0);
+			assert_true(cost.stats.rays == stage->cost.stats.rays);
+		}
+	}
+	if (stage->result != GZ_OK)
+		return;
+	const struct gz_image *kept = &stage->images[KEPT], *bare = &stage->images[BARE];
+	int x = 0, y = 0;
+	assert_true(stage->cost.stats.kept_rays <= stage->cost.stats.rays);
+	if (memcmp(kept->pixels, bare->pixels, (size_t)kept->width * (size_t)kept->height * 4) != 0)
+		fail_msg("%s: differs by %d at %d, %d", what, image_difference(kept, bare, &x, &y),
+			 x, y);
+}
+
+/* Along a line, by a jump, back, outside, and lost. */
+static const struct gz_point places[] = {
+	{ 0.3F, 0.4F }, { 0.31F, 0.4F },  { 0.32F, 0.41F }, { 0.34F, 0.43F },
+	{ 0.8F, 0.7F }, { 0.81F, 0.69F }, { 0.31F, 0.4F },  { 0.31F, 0.4F },
+	{ 1.2F, 0.5F }, { NAN, 0.5F },    { 0.5F, 0.5F },   { 0.51F, 0.51F },
+};
+
+enum { PLACES = sizeof places / sizeof places[0] };
+
+static void follow_places(struct stage *stage, const char *what)
+{
+	uint64_t kept = 0;
+	for (int i = 0; i < PLACES; i++) {
+		stage->request.focus = gz_focus_at(places[i]);
+		make_both(stage, what);
+		kept += stage->cost.stats.kept_rays;
+		if (i == 0)
+			assert_true(kept == 0); /* of the first picture */
+	}
+	if (kept == 0)
+		fail_msg("%s: no ray was kept", what);
+	/* The same place again. */
+	make_both(stage, what);
+	assert_true(stage->cost.stats.kept_rays == stage->cost.stats.rays);
+	assert_true(stage->cost.stats.samples == 0);
+}
+
+static const struct gz_technique *const kept_by[] = { &gz_raycast_technique,
+						      &gz_isosurface_technique };
+
+enum { TECHNIQUES = sizeof kept_by / sizeof kept_by[0] };
+
+static bool is_present(const struct gz_technique *technique)
+{
+	return technique->check("cpu", NULL, NULL) == GZ_OK;
+}
+
+static void pictures_are_the_same_wherever_the_gaze_goes(void **state)
+{
+	(void)state;
+	for (int t = 0; t < TECHNIQUES; t++)
+		for (int method = 0; method < GZ_METHOD_COUNT; method++) {
+			struct stage stage;
+			if (!is_present(kept_by[t]))
+				continue;
+			set_up(kept_by[t], &stage);
+			stage.scene.foveation.method = method;
+			follow_places(&stage, gz_method_names[method]);
+			take_down(&stage);
+		}
+}
+
+/* Light, interleaved steps, coarser levels, long steps, jitter, edges, pre-integration, shadows. */
+static void pictures_are_the_same_with_all_that_rays_do(void **state)
+{
+	(void)state;
+	for (int kind = 0; kind < 7; kind++) {
+		struct stage stage;
+		set_up(&gz_raycast_technique, &stage);
+		struct gz_ray_params *rays = &stage.scene.rays;
+		stage.scene.foveation.method = GZ_METHOD_ACUITY;
+		if (kind == 0)
+			rays->shading = GZ_SHADING_GRADIENT;
+		else if (kind == 1)
+			rays->levels = true, rays->ray_sampling_rate = 0.3;
+		else if (kind == 2)
+			stage.scene.foveation.step_phase = GZ_STEP_PHASE_INTERLEAVED;
+		else if (kind == 3)
+			rays->jitter = 7;
+		else if (kind == 4)
+			stage.scene.foveation.edge_contrast = 0.2;
+		else if (kind == 5)
+			rays->integration = GZ_INTEGRATION_PREINTEGRATED;
+		else
+			rays->light.shadow_steps = 8;
+		follow_places(&stage, "kind of ray");
+		take_down(&stage);
+	}
+}
+
+static void turning_camera_keeps_nothing(void **state)
+{
+	(void)state;
+	struct stage stage;
+	set_up(&gz_raycast_technique, &stage);
+	for (int i = 0; i < 4; i++) {
+		make_both(&stage, "turn");
+		assert_true(stage.cost.stats.kept_rays == 0);
+		gz_camera_turn(&stage.scene.camera, 1);
+	}
+	make_both(&stage, "at rest"); /* seen for the first time */
+	make_both(&stage, "at rest");
+	assert_true(stage.cost.stats.kept_rays == 0);
+	make_both(&stage, "at rest");
+	assert_true(stage.cost.stats.kept_rays == stage.cost.stats.rays);
+	take_down(&stage);
+}
+
+/* Another value of an option: the next choice, or a number nearby. Returns whether there is one. */
+static bool change_option(const struct gz_option *option, void *target)
+{
+	char *field = (char *)target + option->offset;
+	double *number = (double *)(void *)field;
+	int *whole = (int *)(void *)field;
+	switch (option->type) {
+	case GZ_OPTION_BOOL:
+		*(bool *)field = !*(bool *)field;
+		return true;
+	case GZ_OPTION_CHOICE:
+		*whole = option->choices[*whole + 1] ? *whole + 1 : 0;
+		return true;
+	case GZ_OPTION_DOUBLE:
+		*number += *number + 0.25 <= option->max ? 0.25 : -0.25;
+		return *number >= option->min;
+	case GZ_OPTION_INT:
+		*whole += *whole + 1 <= option->max ? 1 : -1;
+		return *whole >= option->min;
+	case GZ_OPTION_STRING:
+	case GZ_OPTION_SIZE:
+		break;
+	}
+	return false;
+}
+
+/* Change each option of a table in turn, by itself. Returns how many of them changed the picture.
+ */
+static int change_options(struct stage *stage, const struct gz_option_binding *binding)
+{
+	int changed = 0;
+	for (size_t i = 0; i < binding->count; i++) {
+		const struct small_scene before = stage->scene;
+		struct gz_image earlier = { 0 };
+		make_both(stage, "before");
+		make_both(stage, "before");
+		make_both(stage, "before");
+		assert_true(stage->cost.stats.kept_rays > 0);
+		assert_int_equal(gz_image_resize(&earlier, WIDTH, HEIGHT), GZ_OK);
+		memcpy(earlier.pixels, stage->images[KEPT].pixels, (size_t)WIDTH * HEIGHT * 4);
+		if (change_option(&binding->options[i], binding->target)) {
+			for (int k = 0; k < 3; k++)
+				make_both(stage, binding->options[i].key);
+			changed += stage->result == GZ_OK &&
+				   memcmp(earlier.pixels, stage->images[KEPT].pixels,
+					  (size_t)WIDTH * HEIGHT * 4) != 0;
+		}
+		stage->scene.rays = before.rays;
+		stage->scene.foveation = before.foveation;
+		gz_image_free(&earlier);
+	}
+	return changed;
+}
+
+/* The options of rays, one by one, on a scene that shows most of them. */
+static void changed_setting_is_noticed(void **state)
+{
+	(void)state;
+	for (int t = 0; t < TECHNIQUES; t++) {
+		struct gz_option_binding bindings[GZ_TECHNIQUE_BINDINGS_MAX];
+		struct stage stage;
+		int changed = 0;
+		if (!is_present(kept_by[t]))
+			continue;
+		set_up(kept_by[t], &stage);
+		stage.scene.rays.shading = GZ_SHADING_GRADIENT;
+		stage.scene.rays.environment.kind = GZ_SURROUNDINGS_SKY;
+		stage.scene.foveation.method = GZ_METHOD_ACUITY;
+		const size_t count =
+			kept_by[t]->bind(&stage.scene.rays, bindings, GZ_TECHNIQUE_BINDINGS_MAX);
+		for (size_t i = 0; i < count; i++)
+			changed += change_options(&stage, &bindings[i]);
+		assert_true(changed > 20);
+		const struct gz_option_binding foveation = {
+			.options = gz_foveation_options,
+			.count = gz_foveation_option_count,
+			.target = &stage.scene.foveation,
+		};
+		assert_true(change_options(&stage, &foveation) > 2);
+		take_down(&stage);
+	}
+}
+
+static void rest(struct stage *stage)
+{
+	for (int i = 0; i < 3; i++)
+		make_both(stage, "rest");
+	assert_true(stage->cost.stats.kept_rays == stage->cost.stats.rays);
+}
+
+/* Camera, size, strip, rays a pixel, and what the revisions say. */
+static void changed_view_is_noticed(void **state)
+{
+	(void)state;
+	struct stage stage;
+	set_up(&gz_raycast_technique, &stage);
+	rest(&stage);
+	stage.scene.camera.eye[0] += 0.01;
+	rest(&stage);
+	stage.scene.camera.projection = GZ_PROJECTION_ORTHOGRAPHIC;
+	rest(&stage);
+	stage.request.width -= 40;
+	rest(&stage);
+	stage.request.image_sampling_rate = 0.5;
+	rest(&stage);
+	stage.request.image_sampling_rate = 1;
+	stage.request.strip.rows = 64;
+	for (int i = 0; i < 2; i++) {
+		stage.request.strip.top = 64 * i;
+		rest(&stage);
+	}
+	stage.request.strip.rows = 0;
+	rest(&stage);
+	take_down(&stage);
+}
+
+static void changed_data_are_noticed(void **state)
+{
+	(void)state;
+	struct stage stage;
+	set_up(&gz_raycast_technique, &stage);
+	rest(&stage);
+	stage.scene.transfer.points[0].rgb[0] = 1;
+	stage.scene.transfer.points[0].opacity = 0.9;
+	stage.object.transfer_revision++;
+	show(&stage);
+	rest(&stage);
+	uint8_t *voxels = (uint8_t *)stage.scene.volume.voxels;
+	memset(voxels, 200, gz_volume_voxel_count(&stage.scene.volume) / 2);
+	stage.object.data_revision++;
+	show(&stage);
+	rest(&stage);
+	take_down(&stage);
+}
+
+/* Keeping stops and goes on; accumulated frames are of other rays. */
+static void keeping_can_be_switched_off(void **state)
+{
+	(void)state;
+	struct stage stage;
+	set_up(&gz_raycast_technique, &stage);
+	rest(&stage);
+	stage.temporal.keep_rays = false;
+	make_both(&stage, "off");
+	assert_true(stage.cost.stats.kept_rays == 0);
+	stage.temporal.keep_rays = true;
+	rest(&stage);
+	struct gz_image *image;
+	struct gz_picture_request request = stage.request;
+	stage.temporal.accumulate = true;
+	request.temporal = &stage.temporal;
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(gz_picture_make(stage.makers[KEPT], &request, &image, &stage.cost),
+				 GZ_OK);
+		assert_true(stage.cost.stats.kept_rays == 0);
+	}
+	stage.temporal.accumulate = false;
+	rest(&stage);
+	take_down(&stage);
+}
+
+TEST_SUITE(kept_rays)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(pictures_are_the_same_wherever_the_gaze_goes),
+		cmocka_unit_test(pictures_are_the_same_with_all_that_rays_do),
+		cmocka_unit_test(turning_camera_keeps_nothing),
+		cmocka_unit_test(changed_setting_is_noticed),
+		cmocka_unit_test(changed_view_is_noticed),
+		cmocka_unit_test(changed_data_are_noticed),
+		cmocka_unit_test(keeping_can_be_switched_off),
+	};
+	return cmocka_run_group_tests_name("kept_rays", tests, NULL, NULL);
+}
