@@ -333,10 +333,14 @@ bool gz_attention_settled(const struct gz_attention *attention)
 
 bool gz_attention_spent(struct gz_attention *attention, double frame_ms, bool kept)
 {
-	/* A frame in a saccade, or one that took rays of earlier frames, is cheaper than frames
-	 * that follow and says nothing about them. */
-	const bool partial = kept || attention->focus.scale > 1;
-	const bool cheap = partial && frame_ms <= attention->params.budget_ms;
+	const double budget_ms = attention->params.budget_ms;
+	/* A frame in a saccade is cheaper than the frames that follow and says nothing about them.
+	 */
+	const bool cheap = attention->focus.scale > 1 && frame_ms <= budget_ms;
+	/* Neither does one that took rays of earlier frames. But it is one of those of which 95 in
+	 * 100 have to be within the budget: it counts as one that just is, which leaves no room. */
+	if (kept)
+		frame_ms = fmax(frame_ms, budget_ms);
 	return !cheap && gz_budget_step(&attention->budget, frame_ms);
 }
 

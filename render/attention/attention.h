@@ -137,8 +137,8 @@ double gz_attention_dead_band_deg(const struct gz_attention_params *params, doub
 /**
  * Report the time of the frame made by the last step. Does nothing without a budget.
  *
- * @param kept  many of its rays are of earlier frames. If it is within the budget it does not
- * count, since the next frame may have to cast all of them
+ * @param kept  many of its rays are of earlier frames. The next frame may have to cast all of them,
+ *              so it gives no reason for a finer plan
  * @return true once, when even the coarsest plan exceeds the budget (gz_budget_step())
  */
 bool gz_attention_spent(struct gz_attention *attention, double frame_ms, bool kept);

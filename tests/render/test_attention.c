@@ -505,6 +505,18 @@ static void frames_with_kept_rays_do_not_make_the_plan_finer(void **state)
 	assert_true(step_event(GZ_EVENT_FIXATION, 0).scale > finer);
 }
 
+static void rare_slow_frames_among_kept_ones_change_nothing(void **state)
+{
+	(void)state;
+	params.budget_ms = 10;
+	gz_attention_set_params(&attention, &params);
+	for (int i = 0; i < 5000; i++) {
+		step_event(GZ_EVENT_FIXATION, 0);
+		assert_false(gz_attention_spent(&attention, i % 100 == 0 ? 40 : 1, true));
+	}
+	assert_true(step_event(GZ_EVENT_FIXATION, 0).scale == 1);
+}
+
 static void presets_parse_and_states_have_names(void **state)
 {
 	(void)state;
@@ -548,6 +560,7 @@ TEST_SUITE(attention)
 				       begin),
 		cmocka_unit_test_setup(cheap_frames_of_saccades_do_not_make_the_plan_finer, begin),
 		cmocka_unit_test_setup(frames_with_kept_rays_do_not_make_the_plan_finer, begin),
+		cmocka_unit_test_setup(rare_slow_frames_among_kept_ones_change_nothing, begin),
 		cmocka_unit_test_setup(presets_parse_and_states_have_names, begin),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

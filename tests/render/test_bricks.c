@@ -174,7 +174,6 @@ static long total_difference(const struct gz_image *a, const struct gz_image *b)
 	return sum;
 }
 
-/* Wait until the next frame lacks nothing; each is to be nearer to the whole picture. */
 /* Draw a picture that may take rays of earlier ones, as in a window at rest. */
 static struct gz_frame_stats render_again(struct gz_raycaster *renderer,
 					  const struct small_scene *scene, struct gz_image *image)
@@ -195,6 +194,7 @@ static struct gz_frame_stats render_again(struct gz_raycaster *renderer,
 	return stats;
 }
 
+/* Wait until the next frame lacks nothing; each is to be nearer to the whole picture. */
 static void picture_is_whole_from_the_first_and_sharper_later(void **state)
 {
 	(void)state;

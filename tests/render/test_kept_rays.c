@@ -8,6 +8,7 @@
 #include "render/frame/picture_maker.h"
 #include "render/plan/method.h"
 #include "render/raycast/raycast.h"
+#include "render/raycast/shared/ray_content.h"
 #include "render/surface/isosurface_technique.h"
 #include "small_scene.h"
 
@@ -340,6 +341,42 @@ static void changed_data_are_noticed(void **state)
 	take_down(&stage);
 }
 
+/* Where pictures of the surroundings were found is no option, and what was found may change. */
+static void revision_makes_another_content(void **state)
+{
+	(void)state;
+	struct gz_ray_content content = { 0 };
+	struct gz_ray_params rays = gz_ray_params_default();
+	const struct gz_ray_frame frame = { 0 };
+	const struct gz_plan plan = { 0 };
+	const uint64_t first = gz_ray_content_follow(&content, &plan, &rays, &frame, NULL, 1);
+	assert_true(first > 0);
+	assert_true(gz_ray_content_follow(&content, &plan, &rays, &frame, NULL, 1) == first);
+	strcpy(rays.environment.cube_path, "elsewhere");
+	const uint64_t second = gz_ray_content_follow(&content, &plan, &rays, &frame, NULL, 2);
+	assert_true(second != first);
+	gz_ray_content_forget(&content);
+	assert_true(gz_ray_content_follow(&content, &plan, &rays, &frame, NULL, 2) != second);
+}
+
+/* A method whose regions change their spacing every frame makes no shelves in vain. */
+static void plans_that_change_their_layers_keep_nothing(void **state)
+{
+	(void)state;
+	struct stage stage;
+	set_up(&gz_raycast_technique, &stage);
+	stage.scene.foveation.method = GZ_METHOD_UNIFORM;
+	for (int i = 0; i < 6; i++) {
+		stage.scene.foveation.uniform_spacing = 2 + i % 2;
+		make_both(&stage, "spacing");
+		assert_true(stage.cost.stats.kept_rays == 0);
+	}
+	make_both(&stage, "spacing"); /* the same as the last */
+	make_both(&stage, "spacing");
+	assert_true(stage.cost.stats.kept_rays == stage.cost.stats.rays);
+	take_down(&stage);
+}
+
 /* Keeping stops and goes on; accumulated frames are of other rays. */
 static void keeping_can_be_switched_off(void **state)
 {
@@ -375,6 +412,8 @@ TEST_SUITE(kept_rays)
 		cmocka_unit_test(changed_setting_is_noticed),
 		cmocka_unit_test(changed_view_is_noticed),
 		cmocka_unit_test(changed_data_are_noticed),
+		cmocka_unit_test(revision_makes_another_content),
+		cmocka_unit_test(plans_that_change_their_layers_keep_nothing),
 		cmocka_unit_test(keeping_can_be_switched_off),
 	};
 	return cmocka_run_group_tests_name("kept_rays", tests, NULL, NULL);

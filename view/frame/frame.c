@@ -1055,8 +1055,8 @@ static const char *budget_state(const struct gz_frame_maker *maker,
 	return gz_budget_state_name(budget->state);
 }
 
-/* A frame does not count for the budget if more than 1/MUCH_KEPT of its rays were kept. Chosen: it
- * would have taken up to a third longer. */
+/* A frame gives no reason for a finer plan if more than 1/MUCH_KEPT of its rays were kept. Chosen:
+ * the others, cast as a whole, would take up to a third longer. */
 enum { MUCH_KEPT = 4 };
 
 /* The budget covers rays and pixels only, not what later frames reuse, and not what is
@@ -1065,7 +1065,7 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 		       const struct gz_frame_record *record)
 {
 	const double spent_ms = record->total_ms - record->prepare_ms;
-	const bool kept = record->kept_rays > record->rays / MUCH_KEPT;
+	const bool much_kept = record->kept_rays > record->rays / MUCH_KEPT;
 	int method = request->settings->foveation.method;
 	const struct gz_plan *plan = gz_picture_maker_plan(maker->pictures);
 	bool same = maker->spent.method == method && maker->spent.width == plan->width &&
@@ -1079,7 +1079,7 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 		warn_standard_ignores_budget(maker);
 		return;
 	}
-	if (gz_attention_spent(&maker->attention, spent_ms, kept))
+	if (gz_attention_spent(&maker->attention, spent_ms, much_kept))
 		gz_warn(maker->log,
 			"attention.budget_ms %g cannot be kept: %s took %.1f ms with its "
 			"coarsest "

@@ -645,8 +645,9 @@ static struct gz_kept_tiles *find_kept_tiles(struct cpu_raycaster *cpu, const st
 		gz_kept_tiles_free(&cpu->kept);
 		return NULL;
 	}
-	const uint64_t content = gz_ray_content_follow(&cpu->content, shot->plan, shot->settings,
-						       ray_frame, shot->depths);
+	const uint64_t content =
+		gz_ray_content_follow(&cpu->content, shot->plan, shot->settings, ray_frame,
+				      shot->depths, cpu->pictures.serial);
 	return gz_kept_tiles_begin(&cpu->kept, shot->plan, content, 1) ? &cpu->kept : NULL;
 }
 

@@ -10,7 +10,8 @@ static bool same_depths(const struct gz_ray_content *content, const struct gz_ra
 	       content->depths.farthest == depths->farthest;
 }
 
-/* Equal bytes are equal settings; others may differ in what no option names. */
+/* Equal bytes are equal settings. Others may differ in padding, and in what no option names: where
+ * pictures of the surroundings were found, which the caller's revision tells. */
 static bool same_settings(const struct gz_ray_params *a, const struct gz_ray_params *b)
 {
 	return memcmp(a, b, sizeof *a) == 0 || gz_ray_params_same(a, b);
@@ -18,17 +19,18 @@ static bool same_settings(const struct gz_ray_params *a, const struct gz_ray_par
 
 uint64_t gz_ray_content_follow(struct gz_ray_content *content, const struct gz_plan *plan,
 			       const struct gz_ray_params *rays, const struct gz_ray_frame *frame,
-			       const struct gz_ray_depths *depths)
+			       const struct gz_ray_depths *depths, uint64_t revision)
 {
 	const int *shift = plan->view.shift;
-	if (content->any && memcmp(&content->frame, frame, sizeof *frame) == 0 &&
-	    content->shift[0] == shift[0] && content->shift[1] == shift[1] &&
-	    content->step_phase == (int)plan->step_phase && same_depths(content, depths) &&
-	    same_settings(&content->rays, rays))
+	if (content->any && content->revision == revision &&
+	    memcmp(&content->frame, frame, sizeof *frame) == 0 && content->shift[0] == shift[0] &&
+	    content->shift[1] == shift[1] && content->step_phase == (int)plan->step_phase &&
+	    same_depths(content, depths) && same_settings(&content->rays, rays))
 		return content->serial;
 	*content = (struct gz_ray_content) {
 		.any = true,
 		.serial = content->serial + 1,
+		.revision = revision,
 		.frame = *frame,
 		.shift = { shift[0], shift[1] },
 		.step_phase = (int)plan->step_phase,

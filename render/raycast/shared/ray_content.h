@@ -17,6 +17,7 @@
 struct gz_ray_content {
 	bool any;
 	uint64_t serial; /**< of it: 1 or more */
+	uint64_t revision;
 	struct gz_ray_frame frame;
 	int shift[2]; /**< of the plan's pixels */
 	int step_phase;
@@ -27,14 +28,15 @@ struct gz_ray_content {
 
 /**
  * Go on to another picture.
- *
- * @param frame   the rays of the picture that the camera frames
- * @param depths  as in struct gz_shot; NULL: none
+ * * @param frame     the rays of the picture that the camera frames
+ * @param depths    as in struct gz_shot; NULL: none
+ * @param revision  another number if anything else that decides rays has changed, such as the
+ *                  pictures of the surroundings
  * @return a number of what is shown, 1 or more: that of the last picture if both have equal rays
  */
 uint64_t gz_ray_content_follow(struct gz_ray_content *content, const struct gz_plan *plan,
 			       const struct gz_ray_params *rays, const struct gz_ray_frame *frame,
-			       const struct gz_ray_depths *depths);
+			       const struct gz_ray_depths *depths, uint64_t revision);
 
 /** The objects have changed: the next picture gets a new number. */
 void gz_ray_content_forget(struct gz_ray_content *content);

@@ -1,24 +1,35 @@
 #include "render/reconstruct/cpu/kept_tiles.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* A tile's points of one plane fill a line of the caches. */
 enum { LINE_BYTES = 64 };
 
 _Static_assert(GZ_KEPT_TILE_WORDS * sizeof(uint32_t) == LINE_BYTES, "tiles are lines");
 
-static bool has_layers_of(const struct gz_kept_tiles *kept, const struct gz_plan *plan, int planes)
+static struct gz_kept_layout layout_of(const struct gz_plan *plan, int planes)
 {
-	if (kept->width != plan->width || kept->height != plan->height ||
-	    kept->layer_count != plan->layer_count || kept->planes != planes)
-		return false;
+	struct gz_kept_layout layout = {
+		.width = plan->width,
+		.height = plan->height,
+		.layer_count = plan->layer_count,
+		.planes = planes,
+		.reconstruction = plan->reconstruction,
+	};
 	for (int i = 0; i < plan->layer_count; i++)
-		if (kept->spacings[i] != plan->layers[i].spacing)
-			return false;
-	return true;
+		layout.spacings[i] = plan->layers[i].spacing;
+	return layout;
 }
 
-/* Where the last tile of any layer ends, px. Finer tiles lie within coarser ones. */
+static bool same_layout(const struct gz_kept_layout *a, const struct gz_kept_layout *b)
+{
+	return a->width == b->width && a->height == b->height && a->layer_count == b->layer_count &&
+	       a->planes == b->planes && a->reconstruction == b->reconstruction &&
+	       memcmp(a->spacings, b->spacings, sizeof a->spacings) == 0;
+}
+
+/* Where the last tile of any layer ends, px. */
 static void find_extent(const struct gz_plan *plan, int extent_px[2])
 {
 	extent_px[0] = extent_px[1] = 0;
@@ -46,21 +57,18 @@ static bool make_shelf(struct gz_kept_shelf *shelf, int spacing, int pattern,
 	return shelf->stamps && shelf->words;
 }
 
-static bool make_shelves(struct gz_kept_tiles *kept, const struct gz_plan *plan, int planes)
+static bool make_shelves(struct gz_kept_tiles *kept, const struct gz_plan *plan)
 {
+	/* Only pyramids have quincunx tiles. */
+	const bool pyramid = plan->reconstruction == GZ_RECONSTRUCT_PYRAMID;
+	const int patterns = pyramid ? GZ_TILE_PATTERN_COUNT : GZ_TILE_SQUARE + 1;
 	int extent_px[2];
 	find_extent(plan, extent_px);
 	for (int layer = 0; layer < plan->layer_count; layer++)
-		for (int pattern = 0; pattern < GZ_TILE_PATTERN_COUNT; pattern++)
+		for (int pattern = 0; pattern < patterns; pattern++)
 			if (!make_shelf(&kept->shelves[layer][pattern], plan->layers[layer].spacing,
-					pattern, extent_px, planes))
+					pattern, extent_px, kept->layout.planes))
 				return false;
-	kept->width = plan->width;
-	kept->height = plan->height;
-	kept->layer_count = plan->layer_count;
-	kept->planes = planes;
-	for (int i = 0; i < plan->layer_count; i++)
-		kept->spacings[i] = plan->layers[i].spacing;
 	return true;
 }
 
@@ -73,25 +81,31 @@ static void free_shelves(struct gz_kept_tiles *kept)
 			free(shelf->words);
 			*shelf = (struct gz_kept_shelf) { 0 };
 		}
-	kept->age = 0;
+	kept->generation = 0;
 }
 
 bool gz_kept_tiles_begin(struct gz_kept_tiles *kept, const struct gz_plan *plan, uint64_t content,
 			 int planes)
 {
-	if (kept->content != content) {
-		kept->content = content;
-		kept->age += kept->age > 0; /* if it comes round to 0, shelves are made anew */
+	const struct gz_kept_layout layout = layout_of(plan, planes);
+	const bool other_content = kept->content != content;
+	const bool other_layout = !same_layout(&kept->layout, &layout);
+	kept->content = content;
+	kept->layout = layout;
+	if (other_layout)
+		free_shelves(kept);
+	else if (other_content && kept->generation > 0)
+		kept->generation++; /* if it comes round to 0, shelves are made anew */
+	if (other_content || other_layout)
 		return false;
-	}
-	if (kept->age > 0 && has_layers_of(kept, plan, planes))
+	if (kept->generation > 0)
 		return true;
 	free_shelves(kept);
-	if (!make_shelves(kept, plan, planes)) {
+	if (!make_shelves(kept, plan)) {
 		free_shelves(kept);
 		return false;
 	}
-	kept->age = 1;
+	kept->generation = 1;
 	return true;
 }
 
@@ -103,9 +117,9 @@ uint32_t *gz_kept_tiles_take(struct gz_kept_tiles *kept, const struct gz_plan *p
 			     (size_t)(tile->x / shelf->width_px);
 	struct gz_kept_stamp *stamp = &shelf->stamps[index];
 	const float step = plan->steps[tile->step];
-	*out_known = stamp->age == kept->age && stamp->step == step;
-	*stamp = (struct gz_kept_stamp) { kept->age, step };
-	return shelf->words + index * (size_t)kept->planes * GZ_KEPT_TILE_WORDS;
+	*out_known = stamp->generation == kept->generation && stamp->step == step;
+	*stamp = (struct gz_kept_stamp) { kept->generation, step };
+	return shelf->words + index * (size_t)kept->layout.planes * GZ_KEPT_TILE_WORDS;
 }
 
 void gz_kept_tiles_free(struct gz_kept_tiles *kept)

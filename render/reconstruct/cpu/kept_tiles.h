@@ -18,8 +18,8 @@
 
 /** What the points of a tile are of. */
 struct gz_kept_stamp {
-	uint32_t age; /**< gz_kept_tiles.age; 0: of nothing */
-	float step;   /**< multiplier of the scene's step */
+	uint32_t generation; /**< gz_kept_tiles.generation; 0: of nothing */
+	float step;          /**< multiplier of the scene's step */
 };
 
 /** All tiles that a layer can have with one pattern. */
@@ -30,14 +30,20 @@ struct gz_kept_shelf {
 	uint32_t *words;              /**< GZ_KEPT_TILE_WORDS for each plane of each tile */
 };
 
-/** The kept tiles of one picture. Zero-initialised is empty; keep it from picture to picture. They
- *  take up to 9 bytes a pixel and plane, of which the system gives those that are used. */
+/** Which tiles a plan can have, and how many words each of their rays has. */
+struct gz_kept_layout {
+	int width, height, layer_count, planes;
+	enum gz_reconstruction reconstruction;
+	int spacings[GZ_PLAN_LAYERS_MAX]; /**< px; 0 behind the last layer */
+};
+
+/** The kept tiles of one picture. Zero-initialised is empty; keep it from picture to picture. Those
+ *  of a pyramid take some 9 bytes a pixel and plane, of which the system gives what is used. */
 struct gz_kept_tiles {
 	struct gz_kept_shelf shelves[GZ_PLAN_LAYERS_MAX][GZ_TILE_PATTERN_COUNT];
-	int width, height, layer_count, planes;
-	int spacings[GZ_PLAN_LAYERS_MAX];
-	uint64_t content; /**< number of what the rays show; 0: nothing yet */
-	uint32_t age;     /**< goes up when the content changes; 0: there are no shelves */
+	struct gz_kept_layout layout; /**< of the last picture's plan */
+	uint64_t content;             /**< number of what its rays show; 0: nothing yet */
+	uint32_t generation; /**< goes up when the content changes; 0: there are no shelves */
 };
 
 /**
@@ -47,9 +53,9 @@ struct gz_kept_tiles {
  *                 the picture before forgets all tiles; so does a plan with other layers or of
  *                 another size
  * @param planes   words of each ray, 1 or more
- * @return whether tiles are kept. They are not in the first picture of a content: while the camera
- *         turns each picture is the first, and keeping would be in vain. They are not if memory is
- *         lacking, either. Then every tile is cast
+ * @return whether tiles are kept. They are not in the first picture after such a change: while the
+ *         camera turns each picture is the first, and keeping would be in vain. They are not if
+ *         memory is lacking, either. Then every tile is cast
  */
 bool gz_kept_tiles_begin(struct gz_kept_tiles *kept, const struct gz_plan *plan, uint64_t content,
 			 int planes);

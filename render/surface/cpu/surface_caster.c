@@ -64,7 +64,6 @@ struct gz_surface_caster {
 	double shade_ms;            /* for surfaces, since the last picture */
 	struct gz_lattices lattices[PLANE_COUNT];
 	struct gz_ray_content content; /* of the last picture */
-	uint64_t content_revision;     /* of its surfaces */
 	struct gz_kept_tiles kept;
 	char description[64];
 };
@@ -574,11 +573,9 @@ static struct gz_kept_tiles *find_kept_tiles(struct gz_surface_caster *caster,
 		gz_kept_tiles_free(&caster->kept);
 		return NULL;
 	}
-	if (caster->content_revision != caster->revision)
-		gz_ray_content_forget(&caster->content);
-	caster->content_revision = caster->revision;
-	const uint64_t content =
-		gz_ray_content_follow(&caster->content, shot->plan, shot->rays, frame, NULL);
+	const uint64_t revision = caster->revision + caster->cube.serial; /* both only go up */
+	const uint64_t content = gz_ray_content_follow(&caster->content, shot->plan, shot->rays,
+						       frame, NULL, revision);
 	return gz_kept_tiles_begin(&caster->kept, shot->plan, content, PLANE_COUNT) ? &caster->kept
 										    : NULL;
 }
