@@ -463,16 +463,22 @@ static void budget_makes_the_whole_plan_coarser_and_saccades_more_so(void **stat
 	assert_true(free_again.scale == 1);
 }
 
-static void cheap_frames_of_saccades_do_not_make_the_plan_finer(void **state)
+/* With a budget of 10 ms, three slow frames make the plan coarser. Returns its scale. */
+static double coarsen_by_slow_frames(void)
 {
-	(void)state;
 	params.budget_ms = 10;
 	gz_attention_set_params(&attention, &params);
 	for (int i = 0; i < 3; i++) {
 		step_event(GZ_EVENT_FIXATION, 0);
 		gz_attention_spent(&attention, 20, false);
 	}
-	double scale = step_event(GZ_EVENT_FIXATION, 0).scale;
+	return step_event(GZ_EVENT_FIXATION, 0).scale;
+}
+
+static void cheap_frames_of_saccades_do_not_make_the_plan_finer(void **state)
+{
+	(void)state;
+	const double scale = coarsen_by_slow_frames();
 	for (int i = 0; i < 200; i++) {
 		double way = i % 4 ? 20 : -20;
 		struct gz_focus focus =
@@ -485,13 +491,7 @@ static void cheap_frames_of_saccades_do_not_make_the_plan_finer(void **state)
 static void frames_with_kept_rays_do_not_make_the_plan_finer(void **state)
 {
 	(void)state;
-	params.budget_ms = 10;
-	gz_attention_set_params(&attention, &params);
-	for (int i = 0; i < 3; i++) {
-		step_event(GZ_EVENT_FIXATION, 0);
-		gz_attention_spent(&attention, 20, false);
-	}
-	const double scale = step_event(GZ_EVENT_FIXATION, 0).scale;
+	const double scale = coarsen_by_slow_frames();
 	for (int i = 0; i < 200; i++)
 		gz_attention_spent(&attention, 1, true);
 	assert_true(step_event(GZ_EVENT_FIXATION, 0).scale == scale);

@@ -417,13 +417,13 @@ static void fill_cast_hits(const struct cast_job *job, const struct gz_tile *til
 }
 
 /* Fill in a tile's rays, in pixels of the picture that the camera frames. */
-static void fill_cast_tile(const struct cast_job *job, const struct gz_tile *tile,
+static void fill_cast_tile(const struct cast_job *job, const struct gz_tile *tile, uint32_t active,
 			   struct gz_cast_tile *out_rays)
 {
 	const struct tile_offsets *offsets = &job->offsets[tile->layer][tile->pattern];
 	const int x = tile->x - job->plan->view.shift[0], y = tile->y - job->plan->view.shift[1];
 	out_rays->step = tile->step;
-	out_rays->active = gz_plan_tile_active(job->plan, tile);
+	out_rays->active = active;
 	const float phase = gz_plan_interleaves(job->plan, tile->step, job->lit)
 				    ? 1.0F / GZ_TILE_PHASE_COUNT
 				    : 0;
@@ -485,11 +485,11 @@ static enum gz_result take_bricks(struct cpu_raycaster *cpu, const struct gz_cam
 }
 
 /* Cast a tile's rays. */
-static void cast_rays(const struct cast_job *job, const struct gz_tile *tile, int worker,
-		      uint32_t pixels[GZ_TILE_RAYS])
+static void cast_rays(const struct cast_job *job, const struct gz_tile *tile, uint32_t active,
+		      int worker, uint32_t pixels[GZ_TILE_RAYS])
 {
 	struct gz_cast_tile rays;
-	fill_cast_tile(job, tile, &rays);
+	fill_cast_tile(job, tile, active, &rays);
 	fill_cast_hits(job, tile, &rays);
 	job->counts[worker].samples += job->tile(&job->casts[tile_level(job, tile)], &rays, pixels);
 }
@@ -505,7 +505,7 @@ static void cast_tile(const struct cast_job *job, const struct gz_tile *tile, in
 	if (known)
 		job->counts[worker].kept_rays += (uint64_t)__builtin_popcount(active);
 	else
-		cast_rays(job, tile, worker, pixels);
+		cast_rays(job, tile, active, worker, pixels);
 	gz_lattices_store(job->lattices, job->plan, tile, active, pixels);
 }
 
