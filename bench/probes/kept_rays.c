@@ -123,13 +123,12 @@ static enum gz_result follow_path(struct kept_stage *stage,
 	stage->camera = stage->scene.settings.camera;
 	for (size_t i = 0; i < stage->path.count && result == GZ_OK; i++) {
 		const struct gz_point gaze = stage->path.points[i].gaze;
-		for (int kind = 0; kind < KINDS && result == GZ_OK; kind++) {
+		for (int kind = 0; kind < KINDS; kind++) {
 			result = make_frame(stage, kind, settings, gaze, &cost);
-			if (result == GZ_OK)
-				stage->times[kind].ms[stage->times[kind].count++] = cost.total_ms;
+			if (result != GZ_OK)
+				return result;
+			stage->times[kind].ms[stage->times[kind].count++] = cost.total_ms;
 		}
-		if (result != GZ_OK)
-			return result;
 		stage->rays += cost.stats.rays;
 		stage->kept_rays += cost.stats.kept_rays;
 		stage->differing += count_differing(&stage->images[BARE], &stage->images[KEPT]);

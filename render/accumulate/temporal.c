@@ -8,7 +8,8 @@
 
 const struct gz_option gz_temporal_options[] = {
 	{ "temporal.keep_rays", GZ_OPTION_BOOL, AT(keep_rays), .preset = "yes",
-	  .help = "while nothing but the gaze changes, cast no ray twice; pictures stay the same" },
+	  .help = "while nothing but the gaze changes, take rays of earlier frames; pictures stay "
+		  "the same" },
 	{ "temporal.accumulate", GZ_OPTION_BOOL, AT(accumulate), .preset = "no",
 	  .help = "keep what earlier frames saw, so that a still picture becomes sharp "
 		  "everywhere" },

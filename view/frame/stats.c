@@ -36,8 +36,7 @@ void gz_frame_record_print(const struct gz_frame_record *record, char *text, siz
 		snprintf(age, sizeof age, "%.1f ms", record->gaze_age_ms);
 	snprintf(text, size,
 		 "%s %dx%d rays %llu kept %llu samples %llu plan %.2f cast %.2f reconstruct %.2f "
-		 "total %.2f "
-		 "ms gaze age %s",
+		 "total %.2f ms gaze age %s",
 		 record->method, record->width, record->height, (unsigned long long)record->rays,
 		 (unsigned long long)record->kept_rays, (unsigned long long)record->samples,
 		 record->plan_ms, record->cast_ms, record->reconstruct_ms, record->total_ms, age);
@@ -66,8 +65,7 @@ static json_t *record_json(const struct gz_frame_record *record)
 {
 	return json_pack(
 		"{s:s, s:s, s:i, s:i, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s, s:o, s:o, "
-		"s:o, "
-		"s:o, s:s}",
+		"s:o, s:o, s:s}",
 		"method", record->method, "backend", record->backend, "width", record->width,
 		"height", record->height, "rays", (json_int_t)record->rays, "kept_rays",
 		(json_int_t)record->kept_rays, "samples", (json_int_t)record->samples, "plan_ms",

@@ -106,7 +106,7 @@ static const struct {
 	{ "attention.importance", "importance by gaze" },
 	{ "attention.importance_dwell_ms", "after a look of, ms" },
 	{ "attention.importance_fade_ms", "fading in, ms" },
-	{ "temporal.keep_rays", "cast no ray twice" },
+	{ "temporal.keep_rays", "rays of earlier frames" },
 	{ "temporal.accumulate", "sharpen still pictures" },
 	{ "temporal.weight", "share of earlier frames" },
 	{ "view.gaze_cursor", "cross at the gaze" },

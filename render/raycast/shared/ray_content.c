@@ -10,13 +10,6 @@ static bool same_depths(const struct gz_ray_content *content, const struct gz_ra
 	       content->depths.farthest == depths->farthest;
 }
 
-/* Equal bytes are equal settings. Others may differ in padding, and in what no option names: where
- * pictures of the surroundings were found, which the caller's revision tells. */
-static bool same_settings(const struct gz_ray_params *a, const struct gz_ray_params *b)
-{
-	return memcmp(a, b, sizeof *a) == 0 || gz_ray_params_same(a, b);
-}
-
 uint64_t gz_ray_content_follow(struct gz_ray_content *content, const struct gz_plan *plan,
 			       const struct gz_ray_params *rays, const struct gz_ray_frame *frame,
 			       const struct gz_ray_depths *depths, uint64_t revision)
@@ -25,7 +18,7 @@ uint64_t gz_ray_content_follow(struct gz_ray_content *content, const struct gz_p
 	if (content->any && content->revision == revision &&
 	    memcmp(&content->frame, frame, sizeof *frame) == 0 && content->shift[0] == shift[0] &&
 	    content->shift[1] == shift[1] && content->step_phase == (int)plan->step_phase &&
-	    same_depths(content, depths) && same_settings(&content->rays, rays))
+	    same_depths(content, depths) && gz_ray_params_same(&content->rays, rays))
 		return content->serial;
 	*content = (struct gz_ray_content) {
 		.any = true,

@@ -16,8 +16,8 @@
 /** What the last picture showed. Zero-initialised is no picture. */
 struct gz_ray_content {
 	bool any;
-	uint64_t serial; /**< of it: 1 or more */
-	uint64_t revision;
+	uint64_t serial;   /**< of it: 1 or more */
+	uint64_t revision; /**< of gz_ray_content_follow() */
 	struct gz_ray_frame frame;
 	int shift[2]; /**< of the plan's pixels */
 	int step_phase;
@@ -28,10 +28,11 @@ struct gz_ray_content {
 
 /**
  * Go on to another picture.
- * * @param frame     the rays of the picture that the camera frames
+ *
+ * @param frame     the rays of the picture that the camera frames
  * @param depths    as in struct gz_shot; NULL: none
- * @param revision  another number if anything else that decides rays has changed, such as the
- *                  pictures of the surroundings
+ * @param revision  another number if what no option tells of has changed and decides rays, such as
+ *                  the pictures of the surroundings
  * @return a number of what is shown, 1 or more: that of the last picture if both have equal rays
  */
 uint64_t gz_ray_content_follow(struct gz_ray_content *content, const struct gz_plan *plan,
