@@ -168,12 +168,25 @@ static void end_connection(struct gz_quota *quota, int fd, enum gz_quota_reason 
 	uint64_t more;
 	release_quota_slot(quota, held);
 	held->ended = true;
-	epoll_ctl(quota->epoll_fd, EPOLL_CTL_DEL, fd, NULL);
 	gz_connection_end(fd, held->identity);
 	atomic_fetch_add_explicit(&quota->ended[reason], 1, memory_order_relaxed);
 	if (gz_ratelimit_pass(&quota->complaints[reason], gz_clock_now_ns(), COMPLAINT_NS, &more))
 		gz_warn(quota->log, "%s (%u are open; %llu more since the last message)",
 			texts[reason], quota->count, (unsigned long long)more);
+}
+
+/* Through a copy, which stays the same file: libzmq may close the connection at any time, and
+ * another thread may then have a file of that number. The kernel watches until libzmq has closed it
+ * (epoll(7), question 6). A reader without a copy is only looked at when all are. */
+static void watch_reader(struct gz_quota *quota, int fd, uint64_t identity)
+{
+	struct epoll_event wanted = { .events = EPOLLIN | EPOLLET, .data.fd = fd };
+	int copy = fcntl(fd, F_DUPFD_CLOEXEC, 0);
+	if (copy < 0)
+		return;
+	if (gz_connection_identity(copy) == identity)
+		epoll_ctl(quota->epoll_fd, EPOLL_CTL_ADD, copy, &wanted);
+	close(copy);
 }
 
 void gz_quota_arrived(struct gz_quota *quota, int fd, const void *socket, bool is_reader,
@@ -203,9 +216,8 @@ void gz_quota_arrived(struct gz_quota *quota, int fd, const void *socket, bool i
 		end_connection(quota, fd, GZ_QUOTA_TOO_MANY);
 		return;
 	}
-	struct epoll_event wanted = { .events = EPOLLIN | EPOLLET, .data.fd = fd };
 	if (is_reader)
-		epoll_ctl(quota->epoll_fd, EPOLL_CTL_ADD, fd, &wanted);
+		watch_reader(quota, fd, identity);
 }
 
 void gz_quota_left(struct gz_quota *quota, int fd, const void *socket)
