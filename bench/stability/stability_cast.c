@@ -322,6 +322,15 @@ static struct gz_camera askew_camera(void)
 	};
 }
 
+/* Rays are compared with those of pictures in which all begin alike. */
+static struct gz_foveation aligned_foveation(const struct gz_stability_bench *bench,
+					     const struct gz_stability_view *view)
+{
+	struct gz_foveation foveation = gz_stability_small_foveation(bench, view);
+	foveation.step_phase = GZ_STEP_PHASE_ALIGNED;
+	return foveation;
+}
+
 static struct ray_check built_in_check(const struct gz_stability_bench *bench,
 				       const struct gz_stability_scene *scene, int width,
 				       int height)
@@ -329,7 +338,7 @@ static struct ray_check built_in_check(const struct gz_stability_bench *bench,
 	struct ray_check check = { .scene = scene,
 				   .view = gz_stability_small_view(width, height),
 				   .gaze = { 0.3F, 0.4F } };
-	check.foveation = gz_stability_small_foveation(bench, &check.view);
+	check.foveation = aligned_foveation(bench, &check.view);
 	return check;
 }
 
@@ -490,7 +499,7 @@ static struct ray_check scene_check(const struct gz_stability_bench *bench,
 	struct ray_check check = { .scene = scene,
 				   .view = middling_view(bench),
 				   .gaze = { 0.4F, 0.55F } };
-	check.foveation = gz_stability_small_foveation(bench, &check.view);
+	check.foveation = aligned_foveation(bench, &check.view);
 	return check;
 }
 

@@ -251,7 +251,7 @@ static enum gz_result plan_request_of(const struct making *making,
 	plan.rays_per_px = rate;
 	plan.scale = request->focus.scale;
 	plan.widen = request->focus.widen;
-	const struct gz_drawer *drawer = gz_drawers_last(&making->maker->drawers);
+	struct gz_drawer *drawer = gz_drawers_last(&making->maker->drawers);
 	const struct gz_shot shot = shot_of(making);
 	if (drawer->ops->bound_plan)
 		drawer->ops->bound_plan(drawer, &shot, &plan);

@@ -22,7 +22,7 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.step_rule", GZ_OPTION_CHOICE, AT(step_rule), .choices = gz_step_rule_names,
 	  .preset = "method", .help = "how steps along a ray grow away from the gaze" },
 	{ "foveation.step_phase", GZ_OPTION_CHOICE, AT(step_phase), .choices = gz_step_phase_names,
-	  .preset = "lit",
+	  .preset = "interleaved",
 	  .help = "samples of neighbouring rays with longer steps: aligned, interleaved, or "
 		  "interleaved where surfaces are lit" },
 	{ "foveation.reconstruction", GZ_OPTION_CHOICE, AT(filter), .choices = gz_filter_names,
@@ -47,9 +47,14 @@ const struct gz_option gz_foveation_options[] = {
 	  .help = "acuity, contrast: how much the distance of rays grows there, as a share of "
 		  "acuity_slope" },
 	{ "foveation.acuity_step_growth", GZ_OPTION_DOUBLE, AT(acuity_step_growth), 0, 1,
-	  .preset = "0.4",
-	  .help = "how fast steps grow away from the gaze by acuity: 0 = not at all, 1 = up to "
+	  .preset = "1",
+	  .help = "how fast steps may grow away from the gaze by acuity: 0 = not at all, 1 = up to "
 		  "eightfold" },
+	{ "foveation.acuity_step_error", GZ_OPTION_DOUBLE, AT(acuity_step_error), 0.0001, 1,
+	  .preset = "0.0125",
+	  .help = "how much of a picture's light longer steps may change: they grow less if data "
+		  "and "
+		  "transfer function are sharp; 1 = they grow as acuity_step_growth says" },
 	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "1",
 	  .help = "acuity: rays that differ by this contrast or more from their neighbours are at "
 		  "an edge, which gets finer rays; 1 = no edge does" },

@@ -14,6 +14,7 @@ static bool request_valid(const struct gz_plan_request *request)
 	return request->rays_per_px >= 0.0625 && request->rays_per_px <= 16 &&
 	       request->scale >= 1 && request->scale <= GZ_PLAN_SCALE_MAX && request->widen >= 0 &&
 	       request->widen <= 1 && request->steps_per_px >= 0 && request->steps_per_px <= 1 &&
+	       request->step_growth >= 0 && request->step_growth <= 1 &&
 	       gz_display_valid(request->display) && gz_foveation_valid(request->foveation);
 }
 
@@ -26,7 +27,7 @@ static bool same_request(const struct gz_plan_request *a, const struct gz_plan_r
 {
 	return a->width == b->width && a->height == b->height && a->rays_per_px == b->rays_per_px &&
 	       a->scale == b->scale && a->widen == b->widen && a->steps_per_px == b->steps_per_px &&
-	       a->refines == b->refines &&
+	       a->step_growth == b->step_growth && a->refines == b->refines &&
 	       ((same_place(a->gaze.x, b->gaze.x) && same_place(a->gaze.y, b->gaze.y)) ||
 		!gz_foveation_follows_gaze(b->foveation)) &&
 	       gz_display_same(a->display, b->display) &&
@@ -160,6 +161,7 @@ struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation
 		.rays_per_px = 1,
 		.scale = 1,
 		.steps_per_px = 1,
+		.step_growth = GZ_PLAN_STEP_GROWTH,
 	};
 }
 

@@ -120,6 +120,10 @@ struct gz_plan_layer {
 #define GZ_PLAN_SCALE_MAX     64
 #define GZ_PLAN_SCALE_OUTSIDE 8 /**< chosen: spacings of 2 px at the fovea's rim become 16 */
 
+/** The limit on growth of steps where a technique does not know what longer steps change. Chosen by
+ *  docs/results.md. */
+#define GZ_PLAN_STEP_GROWTH 0.4
+
 /** What one frame's plan is made from. gz_plan_request_make() fills in the usual values. */
 struct gz_plan_request {
 	const struct gz_foveation *foveation; /**< within the table's ranges */
@@ -146,6 +150,11 @@ struct gz_plan_request {
 	 * (gz_detail_steps_per_px()).
 	 */
 	double steps_per_px;
+	/**
+	 * Limit of foveation.acuity_step_growth, [0, 1], unless foveation.acuity_step_error is 1.
+	 * Techniques set it from what they show (gz_plan_step_growth()).
+	 */
+	double step_growth;
 	/** The technique refines the plan while it draws (gz_plan_refine()): methods with
 	 *  gz_method.refines or refines_edges emit the tiles of their first round. Otherwise they
 	 * emit what they would need to show anything. Other methods ignore it. */
@@ -189,6 +198,19 @@ struct gz_plan {
 		bool valid;
 	} made_for; /**< what the tiles were made for */
 };
+
+/** Whether the acuity rule's steps, which step_growth limits, are those of the plan. */
+bool gz_plan_steps_by_acuity(const struct gz_foveation *foveation);
+
+/**
+ * The growth with which the steps of tiles whose rays lie 8 px apart are a multiple of the scene's:
+ * step_growth of struct gz_plan_request. Most rays far from the gaze are in such tiles or finer
+ * ones.
+ *
+ * @param multiplier  0 or more; less than 1: no growth
+ * @return 0 to 1
+ */
+double gz_plan_step_growth(double multiplier);
 
 /** A request with one ray a pixel, scale 1, widen 0 and unlimited steps. The pointers are borrowed.
  */

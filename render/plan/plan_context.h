@@ -48,6 +48,7 @@ struct gz_plan_context {
 	struct gz_plan_curve step;       /**< of a table */
 	double scale_all, scale_outside; /**< factors of spacings: everywhere, outside the fovea */
 	double steps_per_px;             /**< of the request */
+	double step_growth;              /**< power of the acuity rule's multipliers of steps */
 	double widen;                    /**< of the request */
 	enum gz_plan_round round;
 	struct gz_plan_contrast contrast; /**< GZ_ROUND_FURTHER: of the block that is looked at */

@@ -82,6 +82,20 @@ static enum gz_plan_steps steps_of(const struct gz_foveation *foveation)
 	return GZ_STEPS_ONE;
 }
 
+bool gz_plan_steps_by_acuity(const struct gz_foveation *foveation)
+{
+	const enum gz_plan_steps steps = steps_of(foveation);
+	return steps == GZ_STEPS_RUNG || steps == GZ_STEPS_PLACE;
+}
+
+static double step_growth_of(const struct gz_plan_request *request)
+{
+	const struct gz_foveation *foveation = request->foveation;
+	if (foveation->acuity_step_error >= 1)
+		return foveation->acuity_step_growth;
+	return fmin(foveation->acuity_step_growth, request->step_growth);
+}
+
 /* Whether a technique that refines plans does so with this method. */
 static bool refines(const struct gz_foveation *foveation)
 {
@@ -114,6 +128,7 @@ static void set_geometry(const struct gz_plan_request *request, struct gz_plan_c
 		.scale_outside = fmin(request->scale, GZ_PLAN_SCALE_OUTSIDE),
 		.widen = request->widen,
 		.steps_per_px = request->steps_per_px,
+		.step_growth = step_growth_of(request),
 		.round = request->refines && request->widen <= 0 && refines(request->foveation)
 				 ? GZ_ROUND_FIRST
 				 : GZ_ROUND_ONLY,
@@ -302,6 +317,12 @@ static const double longest_steps[GZ_LADDER_RUNGS] = {
 	1, 1.4, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8,
 };
 
+double gz_plan_step_growth(double multiplier)
+{
+	const double longest = longest_steps[gz_ladder_rung(8)];
+	return multiplier > 1 ? fmin(log(multiplier) / log(longest), 1) : 0;
+}
+
 /* With longer steps a ray misses most of a volume. */
 static const double step_max = 16;
 
@@ -310,7 +331,7 @@ static void make_acuity_ladder(const struct gz_plan_context *context, struct gz_
 	plan->step_count = GZ_LADDER_RUNGS;
 	for (int i = 0; i < GZ_LADDER_RUNGS; i++) {
 		const double most = fmax(1, context->steps_per_px * gz_ladder_px[i]);
-		const double step = pow(longest_steps[i], context->foveation->acuity_step_growth);
+		const double step = pow(longest_steps[i], context->step_growth);
 		plan->steps[i] = (float)fmin(step, most);
 	}
 }

@@ -178,8 +178,8 @@ struct gz_drawer_ops {
 	enum gz_result (*show)(struct gz_drawer *drawer, const struct gz_object *objects,
 			       size_t count);
 	/** Optional. Limit a plan by what the picture shows. Called before the plan is made, so
-	 *  shot->plan must not be read. */
-	void (*bound_plan)(const struct gz_drawer *drawer, const struct gz_shot *shot,
+	 *  shot->plan must not be read. May prepare what later plans can reuse. */
+	void (*bound_plan)(struct gz_drawer *drawer, const struct gz_shot *shot,
 			   struct gz_plan_request *request);
 	/** Draw a picture of the plan's size and write every pixel. @p image NULL leaves the
 	 * picture on the device (see picture_texture). @p out_stats may be NULL.

@@ -291,6 +291,7 @@ static void steps_grow_as_fast_as_asked(void **state)
 		struct fixture f;
 		begin(&f, methods[m], WIDTH, HEIGHT);
 		const uint64_t preset = rays(&f);
+		f.foveation.acuity_step_error = 1;
 		for (int quarters = 0; quarters <= 4; quarters++) {
 			f.foveation.acuity_step_growth = quarters / 4.0;
 			assert_int_equal(rays(&f), preset);
@@ -303,6 +304,43 @@ static void steps_grow_as_fast_as_asked(void **state)
 		}
 		gz_plan_free(&f.plan);
 	}
+}
+
+/* What a technique knows of its content, unless every change is allowed. */
+static void growth_of_steps_has_the_limit_of_the_content(void **state)
+{
+	(void)state;
+	struct fixture f;
+	begin(&f, GZ_METHOD_ACUITY, WIDTH, HEIGHT);
+	const uint64_t unknown = rays(&f);
+	const int last = GZ_LADDER_RUNGS - 1;
+	assert_true(fabs((double)f.plan.steps[last] - pow(8, GZ_PLAN_STEP_GROWTH)) < 1e-6);
+	static const struct {
+		double content, setting, error, wanted;
+	} cases[] = {
+		{ 0, 1, 0.01, 0 },    { 0.3, 1, 0.01, 0.3 }, { 1, 0.7, 0.01, 0.7 },
+		{ 0.3, 0.7, 1, 0.7 }, { 1, 0, 0.01, 0 },     { 0, 1, 1, 1 },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		f.request.step_growth = cases[i].content;
+		f.foveation.acuity_step_growth = cases[i].setting;
+		f.foveation.acuity_step_error = cases[i].error;
+		assert_int_equal(rays(&f), unknown);
+		assert_true(fabs((double)f.plan.steps[last] - pow(8, cases[i].wanted)) < 1e-6);
+	}
+	f.request.step_growth = 1.1;
+	assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
+	f.request.step_growth = NAN;
+	assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
+	/* The power by which the step at 8 px is the multiplier. */
+	assert_true(gz_plan_step_growth(0) == 0 && gz_plan_step_growth(1) == 0);
+	assert_true(fabs(gz_plan_step_growth(2) - 0.5) < 1e-9);
+	assert_true(gz_plan_step_growth(4) == 1 && gz_plan_step_growth(1e9) == 1);
+	f.foveation = gz_foveation_default();
+	assert_true(gz_plan_steps_by_acuity(&f.foveation));
+	f.foveation.step_rule = GZ_STEP_NONE;
+	assert_false(gz_plan_steps_by_acuity(&f.foveation));
+	gz_plan_free(&f.plan);
 }
 
 /* An eye in the volume has rays close together and steps as the scene's; nothing else changes. */
@@ -348,6 +386,7 @@ TEST_SUITE(plan_request)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(steps_grow_as_fast_as_asked),
+		cmocka_unit_test(growth_of_steps_has_the_limit_of_the_content),
 		cmocka_unit_test(bound_on_steps_shortens_acuity_steps_and_moves_no_ray),
 		cmocka_unit_test(greater_scale_never_costs_more_rays),
 		cmocka_unit_test(fovea_gives_way_last),
