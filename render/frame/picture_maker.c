@@ -32,6 +32,7 @@ struct making {
 	struct gz_plan *plan;
 	struct gz_image *image;
 	bool accumulates, keeps_rays, on_device;
+	double bound_ms; /* that limiting the plan took for what later plans reuse */
 	struct gz_picture_cost cost;
 };
 
@@ -234,8 +235,7 @@ static struct gz_shot shot_of(const struct making *making)
 }
 
 /* The request for the plan, in rays, of the whole picture or of one strip. */
-static enum gz_result plan_request_of(const struct making *making,
-				      struct gz_plan_request *out_request)
+static enum gz_result plan_request_of(struct making *making, struct gz_plan_request *out_request)
 {
 	const struct gz_picture_request *request = making->request;
 	const double rate = sampling_rate(request);
@@ -254,7 +254,7 @@ static enum gz_result plan_request_of(const struct making *making,
 	struct gz_drawer *drawer = gz_drawers_last(&making->maker->drawers);
 	const struct gz_shot shot = shot_of(making);
 	if (drawer->ops->bound_plan)
-		drawer->ops->bound_plan(drawer, &shot, &plan);
+		making->bound_ms = drawer->ops->bound_plan(drawer, &shot, &plan);
 	/* Rays of several techniques meet on one plan. */
 	plan.refines = plan.refines && making->maker->drawers.count == 1;
 	*out_request = plan;
@@ -375,7 +375,9 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 		log_failure(&making, result);
 		return result;
 	}
-	making.cost.plan_ms = gz_ns_to_ms(planned_ns - start_ns);
+	making.cost.plan_ms = gz_ns_to_ms(planned_ns - start_ns) - making.bound_ms;
+	making.cost.stats.prepare_ms += making.bound_ms;
+	making.cost.stats.prepare_within_ms += making.bound_ms;
 	making.cost.total_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	*out_image = making.on_device ? NULL : making.image;
 	if (out_cost)

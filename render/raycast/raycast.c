@@ -191,7 +191,8 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 	return result;
 }
 
-static void measure_step_errors(struct raycast_drawer *self, bool nearest)
+/* @return time that it took, ms */
+static double measure_step_errors(struct raycast_drawer *self, bool nearest)
 {
 	const int64_t start_ns = gz_clock_now_ns();
 	enum gz_result result = GZ_OK;
@@ -207,43 +208,47 @@ static void measure_step_errors(struct raycast_drawer *self, bool nearest)
 	}
 	self->values_nearest = nearest;
 	self->errors_hold = true;
-	self->prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	return gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 }
 
 /* The measure does not know light, which changes more than colours do. Chosen on tooth and cranium
  * (docs/results.md). */
 #define LIT_SHARE 0.5
 
-/* Longer steps along a ray are taken only where they change little. */
-static void bound_step_growth(struct raycast_drawer *self, const struct gz_ray_params *rays,
-			      struct gz_plan_request *request)
+/* Longer steps along a ray are taken only where they change little.
+ *
+ * @return time that it took to measure, ms */
+static double bound_step_growth(struct raycast_drawer *self, const struct gz_ray_params *rays,
+				struct gz_plan_request *request)
 {
 	const double limit = request->foveation->acuity_step_error;
 	const struct gz_volume *volume = self->shown.volume;
 	if (volume->bricks || limit >= 1 || !gz_plan_steps_by_acuity(request->foveation))
-		return;
+		return 0;
 	const bool nearest = gz_ray_samples_nearest(rays, volume);
+	double spent_ms = 0;
 	if (!self->errors_hold || self->values_nearest != nearest)
-		measure_step_errors(self, nearest);
+		spent_ms = measure_step_errors(self, nearest);
 	if (!self->errors.known)
-		return;
+		return spent_ms;
 	const double share = gz_ray_params_lit(rays) ? LIT_SHARE : 1;
 	const double longest =
 		gz_step_errors_longest(&self->errors, rays->background, share * limit);
 	request->step_growth = gz_plan_step_growth(longest * rays->ray_sampling_rate);
+	return spent_ms;
 }
 
-static void raycast_bound_plan(struct gz_drawer *drawer, const struct gz_shot *shot,
-			       struct gz_plan_request *request)
+static double raycast_bound_plan(struct gz_drawer *drawer, const struct gz_shot *shot,
+				 struct gz_plan_request *request)
 {
 	struct raycast_drawer *self = raycast_of(drawer);
 	const struct gz_volume *volume = self->shown.volume;
 	request->refines = volume && self->raycaster->ops->refines(self->raycaster);
 	if (!volume || request->height <= 0) /* gz_plan_update() refuses those */
-		return;
+		return 0;
 	request->steps_per_px =
 		gz_detail_steps_per_px(volume, shot->camera, shot->settings, request->height);
-	bound_step_growth(self, shot->settings, request);
+	return bound_step_growth(self, shot->settings, request);
 }
 
 static enum gz_result raycast_draw(struct gz_drawer *drawer, const struct gz_shot *shot,

@@ -95,7 +95,7 @@ struct gz_frame_stats {
 	uint64_t kept_rays;       /**< of them, those that an earlier picture cast */
 	uint64_t samples;         /**< interpolations of data */
 	double prepare_ms;        /**< work that later frames reuse; 0 = none was due */
-	double prepare_within_ms; /**< the part of prepare_ms that draw() itself took */
+	double prepare_within_ms; /**< the part of prepare_ms that the frame itself took */
 	double cast_ms;
 	double reconstruct_ms;
 	double gpu_ms; /**< gl: cast and reconstruction by the device's clock; NaN if the device has
@@ -178,9 +178,11 @@ struct gz_drawer_ops {
 	enum gz_result (*show)(struct gz_drawer *drawer, const struct gz_object *objects,
 			       size_t count);
 	/** Optional. Limit a plan by what the picture shows. Called before the plan is made, so
-	 *  shot->plan must not be read. May prepare what later plans can reuse. */
-	void (*bound_plan)(struct gz_drawer *drawer, const struct gz_shot *shot,
-			   struct gz_plan_request *request);
+	 *  shot->plan must not be read.
+	 *
+	 *  @return time that it took for what later plans reuse, ms */
+	double (*bound_plan)(struct gz_drawer *drawer, const struct gz_shot *shot,
+			     struct gz_plan_request *request);
 	/** Draw a picture of the plan's size and write every pixel. @p image NULL leaves the
 	 * picture on the device (see picture_texture). @p out_stats may be NULL.
 	 * GZ_ERR_NO_DEVICE: the device is lost. Every failure is logged. GZ_SHARES_AS_CLEAR:

@@ -178,6 +178,7 @@ struct stage {
 	struct gz_picture_maker *maker;
 	struct gz_plan plan;
 	struct gz_image image;
+	struct gz_picture_cost cost; /* of the last picture */
 };
 
 static void set_up(struct stage *stage)
@@ -220,7 +221,7 @@ static double longest_step(struct stage *stage)
 	};
 	struct gz_image *image;
 	assert_int_equal(gz_picture_maker_show(stage->maker, &stage->object, 1), GZ_OK);
-	assert_int_equal(gz_picture_make(stage->maker, &request, &image, NULL), GZ_OK);
+	assert_int_equal(gz_picture_make(stage->maker, &request, &image, &stage->cost), GZ_OK);
 	return (double)stage->plan.steps[stage->plan.step_count - 1];
 }
 
@@ -281,6 +282,27 @@ static void steps_follow_new_data(void **state)
 	take_down(&stage);
 }
 
+static void measuring_is_preparation_and_no_part_of_the_plan(void **state)
+{
+	(void)state;
+	if (!small_scene_backend_runs())
+		skip();
+	struct stage stage;
+	const struct gz_picture_cost *cost = &stage.cost;
+	set_up(&stage);
+	stage.scene.foveation.acuity_step_error = 1;
+	longest_step(&stage); /* all else is prepared */
+	stage.scene.foveation.acuity_step_error = 0.01;
+	longest_step(&stage);
+	assert_true(cost->stats.prepare_within_ms > 0);
+	assert_true(cost->stats.prepare_ms >= cost->stats.prepare_within_ms);
+	assert_true(cost->plan_ms + cost->stats.prepare_within_ms + cost->stats.cast_ms <=
+		    cost->total_ms);
+	longest_step(&stage);
+	assert_true(cost->stats.prepare_within_ms == 0);
+	take_down(&stage);
+}
+
 TEST_SUITE(step_errors)
 {
 	const struct CMUnitTest tests[] = {
@@ -291,6 +313,7 @@ TEST_SUITE(step_errors)
 		cmocka_unit_test(flat_and_single_volumes_are_measured),
 		cmocka_unit_test(steps_grow_where_data_and_function_are_smooth),
 		cmocka_unit_test(steps_follow_new_data),
+		cmocka_unit_test(measuring_is_preparation_and_no_part_of_the_plan),
 	};
 	return cmocka_run_group_tests_name("step_errors", tests, NULL, NULL);
 }
