@@ -53,8 +53,7 @@ const struct gz_option gz_foveation_options[] = {
 	{ "foveation.acuity_step_error", GZ_OPTION_DOUBLE, AT(acuity_step_error), 0.0001, 1,
 	  .preset = "0.0125",
 	  .help = "how much of a picture's light longer steps may change: they grow less if data "
-		  "and "
-		  "transfer function are sharp; 1 = they grow as acuity_step_growth says" },
+		  "and transfer function are sharp; 1 = they grow as acuity_step_growth says" },
 	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "1",
 	  .help = "acuity: rays that differ by this contrast or more from their neighbours are at "
 		  "an edge, which gets finer rays; 1 = no edge does" },

@@ -79,8 +79,7 @@ struct gz_foveation {
 	double acuity_far_deg;   /**< acuity, contrast: from here on spacings grow less, (0, 180) */
 	double acuity_far_share; /**< by this share of acuity_slope, [0, 1] */
 	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
-	double acuity_step_error;  /**< most that steps of a volume may change, (0, 1]; 1: anything
-				    */
+	double acuity_step_error;  /**< most that longer steps may change, (0, 1]; 1: anything */
 	double edge_contrast;      /**< acuity: least contrast of an edge, (0, 1]; 1: none is one */
 	double edge_finest;        /**< acuity: spacing at edges, times what the eye resolves */
 	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */

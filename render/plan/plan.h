@@ -120,8 +120,8 @@ struct gz_plan_layer {
 #define GZ_PLAN_SCALE_MAX     64
 #define GZ_PLAN_SCALE_OUTSIDE 8 /**< chosen: spacings of 2 px at the fovea's rim become 16 */
 
-/** The limit on growth of steps where a technique does not know what longer steps change. Chosen by
- *  docs/results.md. */
+/** The limit on growth of steps where a technique does not know what longer steps change. Chosen:
+ *  docs/results.md, "Steps by what they change". */
 #define GZ_PLAN_STEP_GROWTH 0.4
 
 /** What one frame's plan is made from. gz_plan_request_make() fills in the usual values. */
@@ -212,8 +212,8 @@ bool gz_plan_steps_by_acuity(const struct gz_foveation *foveation);
  */
 double gz_plan_step_growth(double multiplier);
 
-/** A request with one ray a pixel, scale 1, widen 0 and unlimited steps. The pointers are borrowed.
- */
+/** A request with one ray a pixel, scale 1 and widen 0, whose steps grow as if nothing were known
+ * of what is shown. The pointers are borrowed. */
 struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation,
 					    const struct gz_display *display, struct gz_point gaze,
 					    int width, int height);

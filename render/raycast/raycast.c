@@ -135,7 +135,8 @@ struct raycast_drawer {
 	struct gz_ray_values values; /* of the volume; may be empty */
 	bool values_nearest;
 	struct gz_step_errors errors;
-	bool errors_hold; /* for what is shown */
+	bool errors_hold;            /* for the values and this function: */
+	struct gz_transfer function; /* without emphasis */
 };
 
 static struct raycast_drawer *raycast_of(struct gz_drawer *drawer)
@@ -151,6 +152,17 @@ static void warn_narrow_range(const struct gz_object *object, const struct gz_lo
 			"the transfer function's range %g to %g is too narrow for the volume's "
 			"values in single precision: it is shown as a step; widen it",
 			transfer->range[0], transfer->range[1]);
+}
+
+/* What is emphasised for a while does not count: steps would change while it fades. */
+static void follow_function(struct raycast_drawer *self, const struct gz_transfer *shown)
+{
+	struct gz_transfer function = *shown;
+	function.emphasis = (struct gz_transfer_emphasis) { 0 };
+	if (gz_transfer_same(&self->function, &function))
+		return;
+	self->function = function;
+	self->errors_hold = false;
 }
 
 static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_object *objects,
@@ -176,32 +188,46 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 				  self->shown.transfer_revision != object->transfer_revision;
 	enum gz_result result = GZ_OK;
 	self->shown.volume = NULL; /* until all of it is set */
-	self->errors_hold = self->errors_hold && same_transfer;
-	if (!same_volume)
+	if (!same_volume) {
+		self->errors_hold = false;
 		gz_ray_values_free(&self->values);
+	}
 	if (!same_volume)
 		result = gz_raycaster_set_volume(self->raycaster, object->volume);
 	if (result == GZ_OK && !same_transfer)
 		result = gz_raycaster_set_transfer(self->raycaster, object->transfer);
 	if (result == GZ_OK && new_function)
 		warn_narrow_range(object, self->log);
-	if (result == GZ_OK)
+	if (result == GZ_OK) {
+		follow_function(self, object->transfer);
 		self->shown = *object;
+	}
 	self->prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	return result;
 }
 
-/* @return time that it took, ms */
-static double measure_step_errors(struct raycast_drawer *self, bool nearest)
+static enum gz_result measure_step_errors(struct raycast_drawer *self, bool nearest)
 {
+	const struct gz_volume *volume = self->shown.volume;
+	struct gz_transfer_table *table = calloc(1, sizeof *table);
+	enum gz_result result = table ? GZ_OK : GZ_ERR_NO_MEM;
+	if (result == GZ_OK && (!self->values.stored || self->values_nearest != nearest))
+		result = gz_ray_values_take(volume, nearest, &self->values);
+	if (result == GZ_OK) {
+		gz_transfer_table_bake(&self->function, volume, table);
+		result = gz_step_errors_measure(&self->values, table, &self->errors);
+	}
+	free(table);
+	return result;
+}
+
+/* @return time that it took, ms */
+static double follow_step_errors(struct raycast_drawer *self, bool nearest)
+{
+	if (self->errors_hold && self->values_nearest == nearest)
+		return 0;
 	const int64_t start_ns = gz_clock_now_ns();
-	enum gz_result result = GZ_OK;
-	if (!self->values.stored || self->values_nearest != nearest)
-		result = gz_ray_values_take(self->shown.volume, nearest, &self->values);
-	if (result == GZ_OK)
-		result = gz_step_errors_measure(
-			&self->values, self->raycaster->ops->table(self->raycaster), &self->errors);
-	if (result != GZ_OK) {
+	if (measure_step_errors(self, nearest) != GZ_OK) {
 		self->errors = (struct gz_step_errors) { 0 };
 		gz_warn(self->log, "no memory to measure what longer steps change: they grow as if "
 				   "nothing were known of the volume");
@@ -215,25 +241,29 @@ static double measure_step_errors(struct raycast_drawer *self, bool nearest)
  * (docs/results.md). */
 #define LIT_SHARE 0.5
 
+/* Larger volumes are not measured: they may lie on a disk, where each value is read by itself.
+ * Chosen: smaller ones fit into memory. */
+#define MEASURED_BYTES_MAX ((size_t)4 << 30)
+
 /* Longer steps along a ray are taken only where they change little.
  *
  * @return time that it took to measure, ms */
 static double bound_step_growth(struct raycast_drawer *self, const struct gz_ray_params *rays,
 				struct gz_plan_request *request)
 {
-	const double limit = request->foveation->acuity_step_error;
+	const struct gz_foveation *foveation = request->foveation;
 	const struct gz_volume *volume = self->shown.volume;
-	if (volume->bricks || limit >= 1 || !gz_plan_steps_by_acuity(request->foveation))
+	/* gz_plan_update() refuses what is not valid. */
+	if (!gz_foveation_valid(foveation) || foveation->acuity_step_error >= 1 ||
+	    !gz_plan_steps_by_acuity(foveation) || volume->bricks ||
+	    gz_volume_bytes(volume) > MEASURED_BYTES_MAX)
 		return 0;
-	const bool nearest = gz_ray_samples_nearest(rays, volume);
-	double spent_ms = 0;
-	if (!self->errors_hold || self->values_nearest != nearest)
-		spent_ms = measure_step_errors(self, nearest);
+	const double spent_ms = follow_step_errors(self, gz_ray_samples_nearest(rays, volume));
 	if (!self->errors.known)
 		return spent_ms;
 	const double share = gz_ray_params_lit(rays) ? LIT_SHARE : 1;
-	const double longest =
-		gz_step_errors_longest(&self->errors, rays->background, share * limit);
+	const double longest = gz_step_errors_longest(&self->errors, rays->background,
+						      share * foveation->acuity_step_error);
 	request->step_growth = gz_plan_step_growth(longest * rays->ray_sampling_rate);
 	return spent_ms;
 }

@@ -754,11 +754,6 @@ static bool cpu_refines(const struct gz_raycaster *raycaster)
 	return !((const struct cpu_raycaster *)raycaster)->volume->bricks;
 }
 
-static const struct gz_transfer_table *cpu_table(const struct gz_raycaster *raycaster)
-{
-	return ((const struct cpu_raycaster *)raycaster)->table;
-}
-
 static const char *cpu_describe(const struct gz_raycaster *raycaster)
 {
 	return ((const struct cpu_raycaster *)raycaster)->description;
@@ -772,7 +767,6 @@ const struct gz_raycaster_ops gz_cpu_raycaster_ops = {
 	.draw = cpu_draw,
 	.shade = cpu_shade,
 	.refines = cpu_refines,
-	.table = cpu_table,
 	.describe = cpu_describe,
 	.destroy = cpu_destroy,
 };

@@ -379,11 +379,6 @@ static bool gl_refines(const struct gz_raycaster *raycaster)
 	return !((const struct gl_raycaster *)raycaster)->scene.bricked;
 }
 
-static const struct gz_transfer_table *gl_table(const struct gz_raycaster *raycaster)
-{
-	return ((const struct gl_raycaster *)raycaster)->scene.table;
-}
-
 static const char *gl_describe(const struct gz_raycaster *raycaster)
 {
 	return ((const struct gl_raycaster *)raycaster)->device.description;
@@ -397,7 +392,6 @@ const struct gz_raycaster_ops gz_gl_raycaster_ops = {
 	.draw = gl_draw,
 	.shade = gl_shade,
 	.refines = gl_refines,
-	.table = gl_table,
 	.picture_texture = gl_picture_texture,
 	.describe = gl_describe,
 	.destroy = gl_destroy,

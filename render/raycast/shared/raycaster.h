@@ -39,9 +39,6 @@ struct gz_raycaster_ops {
 	/** Whether draw() refines plans (gz_plan_refine()) of what is shown. Bricks are asked for
 	 *  by the plan before any ray is cast, so they have to do without. */
 	bool (*refines)(const struct gz_raycaster *raycaster);
-	/** The transfer function's table: that of the last set_transfer(), after which it is asked
-	 * for. Borrowed until the next. */
-	const struct gz_transfer_table *(*table)(const struct gz_raycaster *raycaster);
 	/** Optional: see gz_drawer_ops. */
 	unsigned (*picture_texture)(const struct gz_raycaster *raycaster);
 	/** One line for reports, as in "avx512, 2 threads". */

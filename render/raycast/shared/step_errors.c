@@ -44,14 +44,16 @@ static void make_probe_ray(const struct gz_volume *volume, int i, struct probe_r
 	out_ray->from = -INFINITY;
 	out_ray->to = INFINITY;
 	for (int axis = 0; axis < 3; axis++) {
-		const double last = volume->dims[axis] - 1;
-		const double place = last * even_point(i, axis);
+		/* Data lie at the centres of voxels. */
+		const double begin = -0.5, end = volume->dims[axis] - 0.5;
+		const double place = begin + (end - begin) * even_point(i, axis);
 		const double direction = towards[axis] * voxel_length / spacing[axis];
 		out_ray->place[axis] = place;
 		out_ray->direction[axis] = direction;
 		if (direction == 0)
 			continue;
-		const double one = -place / direction, other = (last - place) / direction;
+		const double one = (begin - place) / direction;
+		const double other = (end - place) / direction;
 		out_ray->from = fmax(out_ray->from, fmin(one, other));
 		out_ray->to = fmin(out_ray->to, fmax(one, other));
 	}
@@ -336,6 +338,6 @@ double gz_step_errors_longest(const struct gz_step_errors *errors, const double 
 	if (left < 0)
 		return gz_step_error_lengths[0] * exp(left / slope_before(errors, behind));
 	if (i == last)
-		return gz_step_error_lengths[last];
+		return INFINITY;
 	return gz_step_error_lengths[i] * exp(left / slope_at(errors, i, behind));
 }

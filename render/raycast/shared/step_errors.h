@@ -14,7 +14,8 @@
 #include "render/transfer/transfer_table.h"
 
 /** Number of rays. Chosen: other rays then give growths that differ by a few hundredths, and the
- * values of a volume of 256³ voxels are there in some milliseconds. */
+ * values of a volume of 256³ voxels are there in some milliseconds. The time grows with the edge.
+ */
 #define GZ_STEP_ERROR_RAYS 256
 
 /** Samples per voxel length of the finest steps. Chosen: finer ones change little. */
@@ -57,8 +58,7 @@ struct gz_step_errors {
  * @param values   replaced; zeroed or from an earlier call. gz_ray_values_free()
  * @retval GZ_ERR_NO_MEM  @p values is empty
  *
- * Threads: any. Takes some milliseconds, or as long as it takes to read as many voxels of a volume
- * on the disk.
+ * Threads: any. Takes some milliseconds for edges of 256 voxels, and in proportion for others.
  */
 enum gz_result gz_ray_values_take(const struct gz_volume *volume, bool nearest,
 				  struct gz_ray_values *values);
@@ -99,7 +99,7 @@ double gz_step_error_at(const struct gz_step_errors *errors, double length,
  * @param errors      known
  * @param background  as above
  * @param limit       above 0
- * @return voxel lengths, up to the longest that is measured
+ * @return voxel lengths; infinite if the longest that is measured changes no more
  */
 double gz_step_errors_longest(const struct gz_step_errors *errors, const double background[3],
 			      double limit);
