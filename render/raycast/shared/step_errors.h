@@ -13,9 +13,9 @@
 #include "render/data/volume.h"
 #include "render/transfer/transfer_table.h"
 
-/** Number of rays. Chosen: other rays then give growths that differ by a few hundredths, and the
- * values of a volume of 256³ voxels are there in some milliseconds. The time grows with the edge.
- */
+/** Number of rays. Chosen: other rays mostly give growths that differ by a few hundredths
+ * (docs/results.md), and the values of a volume of 256³ voxels are there in some milliseconds. The
+ * time grows with the edge. */
 #define GZ_STEP_ERROR_RAYS 256
 
 /** Samples per voxel length of the finest steps. Chosen: finer ones change little. */
