@@ -191,9 +191,8 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 	if (!same_volume) {
 		self->errors_hold = false;
 		gz_ray_values_free(&self->values);
-	}
-	if (!same_volume)
 		result = gz_raycaster_set_volume(self->raycaster, object->volume);
+	}
 	if (result == GZ_OK && !same_transfer)
 		result = gz_raycaster_set_transfer(self->raycaster, object->transfer);
 	if (result == GZ_OK && new_function)
