@@ -167,6 +167,50 @@ static void spike_one_entry_wide_is_exact_for_every_segment_over_it(void **state
 	free_tables(tables);
 }
 
+static void segments_between_values_that_show_nothing_are_empty(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_waves(20, 20, 20, GZ_VOXEL_U8);
+	struct tables *tables = make_tables();
+	int empty = 0, shared = 0;
+	/* Walls anywhere in the cells of voxels' values. */
+	for (int wall = 960; wall < 968; wall++) {
+		const double from = wall / 4095.0, to = (wall + 200) / 4095.0;
+		scene.transfer = (struct gz_transfer) {
+			.count = 4,
+			.points = { { from, { 0, 0, 0 }, 0 },
+				    { from, { 1, 1, 1 }, 0.6 },
+				    { to, { 1, 1, 1 }, 0.6 },
+				    { to, { 0, 0, 0 }, 0 } },
+		};
+		gz_transfer_table_bake(&scene.transfer, &scene.volume, &tables->table);
+		assert_int_equal(tables->table.count, GZ_TRANSFER_TABLE_SIZE);
+		gz_transfer_sums_make(&tables->table, &tables->sums);
+		integrate(tables, 1, NULL, tables);
+		for (int least = 0; least < 256; least++)
+			for (int most = least; most < 256; most++) {
+				const int a =
+					gz_transfer_table_nearest(&tables->table, (float)least) /
+					STRIDE;
+				const int b =
+					gz_transfer_table_nearest(&tables->table, (float)most) /
+					STRIDE;
+				const float there = tables->entries[a * SIZE + b].opacity;
+				const float back = tables->entries[b * SIZE + a].opacity;
+				if (gz_transfer_table_shows(&tables->table, least, most))
+					continue;
+				if (there != 0 || back != 0)
+					fail_msg("wall at %d: %d to %d shows", wall, least, most);
+				empty++;
+			}
+		shared += gz_transfer_table_shows(&tables->table, 60, 60);
+	}
+	assert_true(empty > 8 * 10000);
+	assert_int_equal(shared, 8); /* its cell */
+	free_tables(tables);
+	small_scene_free(&scene);
+}
+
 static void opaque_spike_lets_nothing_through(void **state)
 {
 	(void)state;
@@ -583,6 +627,7 @@ TEST_SUITE(preintegrated)
 		cmocka_unit_test(tables_equal_fine_integration_between_two_values),
 		cmocka_unit_test(segment_within_a_cell_has_its_mean),
 		cmocka_unit_test(spike_one_entry_wide_is_exact_for_every_segment_over_it),
+		cmocka_unit_test(segments_between_values_that_show_nothing_are_empty),
 		cmocka_unit_test(opaque_spike_lets_nothing_through),
 		cmocka_unit_test(front_colour_hides_the_back_one),
 		cmocka_unit_test(tables_are_the_same_bits_for_any_number_of_workers),

@@ -26,8 +26,8 @@ struct level_list {
 /* x, y, z and 0 */
 typedef float corner __attribute__((vector_size(16)));
 
-/* A box around all rays of a tile at each level. Its corners go straight, and no ray is ever
- * outside. Corners are counted from the first datum. */
+/* A box around all rays of a tile at each level from 0 to `count`. Its corners go straight, and no
+ * ray is ever outside. Corners are counted from the first datum. */
 struct beam {
 	corner low, high;           /* at level 0 */
 	corner low_step, high_step; /* from one level to the next */
@@ -46,9 +46,10 @@ SIMD int beam_parts(const struct beam *beam)
 	return TILE_PARTS == 1 ? 1 : beam->parts;
 }
 
-/* k at level 0: the first sample of the ray that comes first, and the samples of the others that
- * are level with it, which may lie before they enter the box. Finds the levels, too. */
-SIMD void beam_levels(const struct rays *rays, struct beam *beam)
+/* k at level 0: the place `within` the first segment, from 0 to 1, of the ray that comes first, and
+ * the places of the others that are level with it, which may lie before they enter the box. Finds
+ * the levels, too. */
+SIMD void beam_levels(const struct rays *rays, float within, struct beam *beam)
 {
 	float nearest = INFINITY;
 	for (int part = 0; part < beam_parts(beam); part++)
@@ -56,7 +57,7 @@ SIMD void beam_levels(const struct rays *rays, struct beam *beam)
 				 vf_least_of(rays[part].zero + rays[part].first, rays[part].hit));
 	beam->count = 0;
 	for (int part = 0; part < beam_parts(beam); part++) {
-		beam->first[part] = vf_set(0.5F) + vf_nearest(vf_set(nearest) - rays[part].zero);
+		beam->first[part] = vf_set(within) + vf_nearest(vf_set(nearest) - rays[part].zero);
 		const vf levels = rays[part].end - beam->first[part];
 		beam->count = greater(beam->count, ceilf(vf_greatest_of(levels, rays[part].hit)));
 	}
@@ -86,24 +87,31 @@ SIMD float longest_way(corner way)
 	return greater(greater(fabsf(way[0]), fabsf(way[1])), fabsf(way[2]));
 }
 
-/* Each ray moves straight and evenly, so the least coordinate of all rays is a concave function of
+/* How long the box is, from its edges at both ends. */
+SIMD void beam_spread(corner first, corner last, struct beam *beam)
+{
+	beam->spread_x = greater(first[0], last[0]);
+	beam->spread_yz = greater(greater(first[1], last[1]), greater(first[2], last[2]));
+	beam->spread = greater(beam->spread_x, beam->spread_yz);
+	beam->grid = 0;
+	while (beam->grid < GZ_FINE_GRIDS && beam->spread > (float)(GZ_FINE_EDGE << beam->grid))
+		beam->grid++;
+}
+
+/* The rays whose levels lie `within` their segments: 1/2 for samples, 0 for the ends of segments.
+ * Each ray moves straight and evenly, so the least coordinate of all rays is a concave function of
  * the level and never below the line between its ends; likewise for the greatest. */
-SIMD struct beam beam_of(const struct rays *rays, int parts)
+SIMD struct beam beam_of(const struct rays *rays, int parts, float within)
 {
 	struct beam beam = { .parts = parts };
-	beam_levels(rays, &beam);
+	beam_levels(rays, within, &beam);
 	corner low, high;
 	beam_corners(rays, &beam, 0, &beam.low, &beam.high);
 	beam_corners(rays, &beam, beam.count, &low, &high);
 	const float share = 1 / greater(beam.count, 1);
 	beam.low_step = (low - beam.low) * share;
 	beam.high_step = (high - beam.high) * share;
-	const corner first = beam.high - beam.low, last = high - low;
-	beam.spread_x = greater(first[0], last[0]);
-	beam.spread_yz = greater(greater(first[1], last[1]), greater(first[2], last[2]));
-	beam.spread = greater(beam.spread_x, beam.spread_yz);
-	while (beam.grid < GZ_FINE_GRIDS && beam.spread > (float)(GZ_FINE_EDGE << beam.grid))
-		beam.grid++;
+	beam_spread(beam.high - beam.low, high - low, &beam);
 	beam.levels_per_voxel =
 		1 / greater(longest_way(beam.low_step), longest_way(beam.high_step));
 	return beam;

@@ -19,6 +19,7 @@
 #include "render/raycast/cpu/cast_fetch.h"
 #include "render/raycast/cpu/cast_preintegrated.h"
 #include "render/raycast/cpu/cast_rays.h"
+#include "render/raycast/cpu/cast_segments.h"
 #include "render/raycast/cpu/cast_shade.h"
 #include "render/raycast/cpu/cast_together.h"
 
@@ -124,11 +125,11 @@ SIMD uint32_t march_beams(const struct march *m, const struct look_up *look_up,
 			  struct light light[TILE_PARTS])
 {
 	uint32_t samples = 0;
-	const struct beam tile = beam_of(m->rays, TILE_PARTS);
+	const struct beam tile = beam_of(m->rays, TILE_PARTS, 0.5F);
 	const int whole = TILE_PARTS == 1 || company_of(m->cast, m->reading, &tile) == SIDE_BY_SIDE;
 	for (int part = 0; part < TILE_PARTS; part += whole ? TILE_PARTS : 1) {
 		const struct march some = march_of_part(m, part);
-		const struct beam beam = whole ? tile : beam_of(some.rays, 1);
+		const struct beam beam = whole ? tile : beam_of(some.rays, 1, 0.5F);
 		const vm alive = rays_alive(&some, some.rays, &light[part]);
 		if (beam.grid < GZ_FINE_GRIDS)
 			samples += march_beam(&some, look_up, &beam, &light[part]);
@@ -202,8 +203,13 @@ SIMD uint32_t cast_tile_by_segments(const struct march *m, struct light light[TI
 	uint32_t samples = 0;
 	for (int part = 0; part < TILE_PARTS; part++) {
 		const struct march one = march_of_part(m, part);
-		if (vm_any(one.rays->hit))
-			samples += cast_by_segments(&one, &light[part]);
+		samples += march_segment_part(&one, segment_head(one.rays), one.rays->head,
+					      &light[part]);
+	}
+	samples += march_tile_segments(m, light);
+	for (int part = 0; part < TILE_PARTS; part++) {
+		const struct march one = march_of_part(m, part);
+		samples += march_segment_part(&one, one.rays->end, one.rays->rest, &light[part]);
 	}
 	return samples;
 }

@@ -41,6 +41,17 @@ SIMD void take_close_entries(const struct gz_transfer_entry *samples, vi front, 
 	*colour = vi_select(close, own_colour, *colour);
 }
 
+/* Opacity and colour of whole segments between two entries. */
+SIMD void look_up_segments(const struct march *m, vi front, vi back, vm mask, vf *opacity,
+			   vi *colour)
+{
+	const struct gz_cast *cast = m->cast;
+	load_pairs(cast->preintegrated[m->step], preintegrated_pair(cast, front, back), opacity,
+		   colour);
+	if (__builtin_expect(cast->fine_entries, 0))
+		take_close_entries(cast->step_table[m->step], front, back, mask, opacity, colour);
+}
+
 /*
  * For lanes that ask, at the fronts of their segments: find how far segments are to be taken, and
  * advance past the segments that lie wholly in empty space. A segment that begins there and ends
@@ -60,7 +71,7 @@ SIMD void look_ahead_segments(const struct gz_cast *cast, const struct rays *ray
 	*until = vf_select(asks, vf_select(empty, one, vf_max(leave, one)), *until);
 }
 
-/* All whole segments; k counts their fronts. */
+/* All whole segments of one register, each ray for itself; k counts their fronts. */
 SIMD uint32_t march_segments(const struct march *m, struct light *light)
 {
 	const struct gz_cast *cast = m->cast;
@@ -92,11 +103,7 @@ SIMD uint32_t march_segments(const struct march *m, struct light *light)
 		samples += vm_count(takes);
 		vf opacity;
 		vi colour;
-		gather_pair(cast->preintegrated[m->step], preintegrated_pair(cast, front, back),
-			    takes, &opacity, &colour);
-		if (__builtin_expect(cast->fine_entries, 0))
-			take_close_entries(cast->step_table[m->step], front, back, takes, &opacity,
-					   &colour);
+		look_up_segments(m, front, back, takes, &opacity, &colour);
 		composite_at(m, k - vf_set(0.5F), colour, opacity, takes, light);
 		front = back;
 		known = takes;
@@ -141,13 +148,10 @@ SIMD uint32_t march_segment_part(const struct march *m, vf front, vf steps, stru
 	return 2 * vm_count(mask);
 }
 
-SIMD uint32_t cast_by_segments(const struct march *m, struct light *light)
+/* Where the partial segment before the first whole one begins. */
+SIMD vf segment_head(const struct rays *rays)
 {
-	const struct rays *rays = m->rays;
-	const vf from = vf_fma(rays->head, vf_set(-0.5F), rays->head_at);
-	uint32_t samples = march_segment_part(m, from, rays->head, light);
-	samples += march_segments(m, light);
-	return samples + march_segment_part(m, rays->end, rays->rest, light);
+	return vf_fma(rays->head, vf_set(-0.5F), rays->head_at);
 }
 
 #endif
