@@ -8,7 +8,7 @@
 #include "render/raycast/gl/gl_raycaster.h"
 #include "render/raycast/shared/detail.h"
 #include "render/raycast/shared/raycaster.h"
-#include "render/raycast/shared/step_errors.h"
+#include "render/raycast/shared/step_bound.h"
 
 #define GZ_LOG_MODULE "raycast"
 
@@ -131,12 +131,7 @@ struct raycast_drawer {
 	const struct gz_log *log;
 	struct gz_object shown; /* no volume: nothing yet */
 	double prepare_ms;      /* since the last picture */
-	/* What longer steps change; measured when a plan first asks for it. */
-	struct gz_ray_values values; /* of the volume; may be empty */
-	bool values_nearest;
-	struct gz_step_errors errors;
-	bool errors_hold;            /* for the values and this function: */
-	struct gz_transfer function; /* without emphasis */
+	struct gz_step_bound step_bound;
 };
 
 static struct raycast_drawer *raycast_of(struct gz_drawer *drawer)
@@ -152,17 +147,6 @@ static void warn_narrow_range(const struct gz_object *object, const struct gz_lo
 			"the transfer function's range %g to %g is too narrow for the volume's "
 			"values in single precision: it is shown as a step; widen it",
 			transfer->range[0], transfer->range[1]);
-}
-
-/* What is emphasised for a while does not count: steps would change while it fades. */
-static void follow_function(struct raycast_drawer *self, const struct gz_transfer *shown)
-{
-	struct gz_transfer function = *shown;
-	function.emphasis = (struct gz_transfer_emphasis) { 0 };
-	if (gz_transfer_same(&self->function, &function))
-		return;
-	self->function = function;
-	self->errors_hold = false;
 }
 
 static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_object *objects,
@@ -189,8 +173,7 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 	enum gz_result result = GZ_OK;
 	self->shown.volume = NULL; /* until all of it is set */
 	if (!same_volume) {
-		self->errors_hold = false;
-		gz_ray_values_free(&self->values);
+		gz_step_bound_forget_volume(&self->step_bound);
 		result = gz_raycaster_set_volume(self->raycaster, object->volume);
 	}
 	if (result == GZ_OK && !same_transfer)
@@ -198,73 +181,11 @@ static enum gz_result raycast_show(struct gz_drawer *drawer, const struct gz_obj
 	if (result == GZ_OK && new_function)
 		warn_narrow_range(object, self->log);
 	if (result == GZ_OK) {
-		follow_function(self, object->transfer);
+		gz_step_bound_set_function(&self->step_bound, object->transfer);
 		self->shown = *object;
 	}
 	self->prepare_ms += gz_ns_to_ms(gz_clock_now_ns() - start_ns);
 	return result;
-}
-
-static enum gz_result measure_step_errors(struct raycast_drawer *self, bool nearest)
-{
-	const struct gz_volume *volume = self->shown.volume;
-	struct gz_transfer_table *table = calloc(1, sizeof *table);
-	enum gz_result result = table ? GZ_OK : GZ_ERR_NO_MEM;
-	if (result == GZ_OK && (!self->values.stored || self->values_nearest != nearest))
-		result = gz_ray_values_take(volume, nearest, &self->values);
-	if (result == GZ_OK) {
-		gz_transfer_table_bake(&self->function, volume, table);
-		result = gz_step_errors_measure(&self->values, table, &self->errors);
-	}
-	free(table);
-	return result;
-}
-
-/* @return time that it took, ms */
-static double follow_step_errors(struct raycast_drawer *self, bool nearest)
-{
-	if (self->errors_hold && self->values_nearest == nearest)
-		return 0;
-	const int64_t start_ns = gz_clock_now_ns();
-	if (measure_step_errors(self, nearest) != GZ_OK) {
-		self->errors = (struct gz_step_errors) { 0 };
-		gz_warn(self->log, "no memory to measure what longer steps change: they grow as if "
-				   "nothing were known of the volume");
-	}
-	self->values_nearest = nearest;
-	self->errors_hold = true;
-	return gz_ns_to_ms(gz_clock_now_ns() - start_ns);
-}
-
-/* The measure does not know light, which changes more than colours do. Chosen on tooth and cranium
- * (docs/results.md). */
-#define LIT_SHARE 0.5
-
-/* Larger volumes are not measured: they may lie on a disk, where each value is read by itself.
- * Chosen: smaller ones fit into memory. */
-#define MEASURED_BYTES_MAX ((size_t)4 << 30)
-
-/* Longer steps along a ray are taken only where they change little.
- *
- * @return time that it took to measure, ms */
-static double bound_step_growth(struct raycast_drawer *self, const struct gz_ray_params *rays,
-				struct gz_plan_request *request)
-{
-	const struct gz_foveation *foveation = request->foveation;
-	const struct gz_volume *volume = self->shown.volume;
-	/* gz_plan_update() refuses what is not valid. */
-	if (!gz_foveation_valid(foveation) || foveation->acuity_step_error >= 1 ||
-	    !gz_plan_steps_by_acuity(foveation) || volume->bricks ||
-	    gz_volume_bytes(volume) > MEASURED_BYTES_MAX)
-		return 0;
-	const double spent_ms = follow_step_errors(self, gz_ray_samples_nearest(rays, volume));
-	if (!self->errors.known)
-		return spent_ms;
-	const double share = gz_ray_params_lit(rays) ? LIT_SHARE : 1;
-	const double longest = gz_step_errors_longest(&self->errors, rays->background,
-						      share * foveation->acuity_step_error);
-	request->step_growth = gz_plan_step_growth(longest * rays->ray_sampling_rate);
-	return spent_ms;
 }
 
 static double raycast_bound_plan(struct gz_drawer *drawer, const struct gz_shot *shot,
@@ -277,7 +198,7 @@ static double raycast_bound_plan(struct gz_drawer *drawer, const struct gz_shot 
 		return 0;
 	request->steps_per_px =
 		gz_detail_steps_per_px(volume, shot->camera, shot->settings, request->height);
-	return bound_step_growth(self, shot->settings, request);
+	return gz_step_bound_plan(&self->step_bound, volume, shot->settings, self->log, request);
 }
 
 static enum gz_result raycast_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
@@ -323,7 +244,7 @@ static void raycast_destroy(struct gz_drawer *drawer)
 {
 	struct raycast_drawer *self = raycast_of(drawer);
 	gz_raycaster_destroy(&self->raycaster);
-	gz_ray_values_free(&self->values);
+	gz_step_bound_free(&self->step_bound);
 	free(self);
 }
 
