@@ -73,7 +73,7 @@ end_step() {
 		say "$name: done $3"
 	else
 		say "$name: failed (status $status) $3; the end of $log:"
-		grep -nE '(error|warning|FAILED|Failed|\*\*\*)' "$log" | tail -n 20 || true
+		grep -nE '([Ee]rror|ERROR|warning|FAIL|Failed|\*\*\*)' "$log" | tail -n 20 || true
 		tail -n 30 "$log"
 	fi
 	return "$status"

@@ -150,15 +150,16 @@ class WindowCase(unittest.TestCase):
                 pass  # the thread has ended
         return True
 
-    def until_idle(self):
-        """Wait until the server has passed everything on and the viewer has nothing more to do."""
-        both = (self.server, self.viewer)
+    def until_idle(self, *others):
+        """Wait until the server has passed everything on and the viewer, and other processes, have
+        nothing more to do."""
+        all_of_them = (self.server, self.viewer, *others)
         still, before = 0, None
 
         def rests():
             nonlocal still, before
-            now = [self.ticks_of(process) for process in both]
-            still = still + 1 if now == before and all(map(self.waits, both)) else 0
+            now = [self.ticks_of(process) for process in all_of_them]
+            still = still + 1 if now == before and all(map(self.waits, all_of_them)) else 0
             before = now
             return still == 6
 

@@ -4,6 +4,7 @@ them.
 window_start.py GAZEVIEW GAZED SCENES-FOLDER [FOLDER-FOR-SCREENSHOTS]
 """
 
+import collections
 import contextlib
 import os
 import sys
@@ -16,6 +17,8 @@ from window_case import SCENE, SIZE, WindowCase
 BUTTON = (36, 69, 109)  # ground of a button, about
 BAR = (36, 36, 36)  # the menu bar's ground
 SAMPLES = 25
+# A program that the window has started: its process and its command line.
+Child = collections.namedtuple("Child", "pid words")
 # Camera of the small scene, moved to its right by this: the object is on the left, or on the right.
 ASIDE = 0.65
 
@@ -153,22 +156,22 @@ class Start(WindowCase):
         self.assertFalse(os.path.exists(picture), "its picture is left behind")
 
     def children(self):
-        """Command lines of the programs that the window has started."""
-        lines = []
+        """The programs that the window has started."""
+        children = []
         for task in os.listdir("/proc/%d/task" % self.viewer.pid):
             # Threads and children may end meanwhile.
             with contextlib.suppress(FileNotFoundError, ProcessLookupError):
                 with open("/proc/%d/task/%s/children" % (self.viewer.pid, task),
-                          encoding="ascii") as children:
-                    for child in children.read().split():
-                        with open("/proc/%s/cmdline" % child, encoding="utf-8") as line:
-                            lines.append(line.read().split("\0")[:-1])
-        return lines
+                          encoding="ascii") as pids:
+                    for pid in pids.read().split():
+                        with open("/proc/%s/cmdline" % pid, encoding="utf-8") as line:
+                            children.append(Child(int(pid), line.read().split("\0")[:-1]))
+        return children
 
     def told_picture(self):
         """The picture that a started gazed was told to look at."""
-        for words in self.children():
-            for word in words:
+        for child in self.children():
+            for word in child.words:
                 if word.startswith("--sim.picture="):
                     return word.split("=", 1)[1]
         return None
@@ -179,14 +182,13 @@ class Start(WindowCase):
         own = self.window
         self.find("run the example study")
         self.found(than=own)
-        study = self.wait_for(lambda: [words for words in self.children() if "--experiment" in words],
-                              "a study")[0]
-        self.assertNotIn("--participant", study)
-        self.assertTrue(os.path.exists(study[study.index("--experiment") + 1]))
+        study = self.wait_for(self.study, "a study")
+        self.assertNotIn("--participant", study.words)
+        self.assertTrue(os.path.exists(study.words[study.words.index("--experiment") + 1]))
         # It is left before and after its first question; the first window says where answers are.
-        self.until_idle()
+        self.until_idle(study)
         self.press("Escape")
-        self.wait_for(lambda: not self.study_runs(), "an end")
+        self.wait_for(lambda: not self.study(), "an end")
         self.window = own
         self.tool("windowfocus", "--sync", own)
         self.find("run the example study")
@@ -204,8 +206,9 @@ class Start(WindowCase):
         self.assertEqual(said.count("the example study has ended without answers"), 1, said)
         self.assertIn("the example study has ended; its answers are in " + answers, said)
 
-    def study_runs(self):
-        return any("--experiment" in words for words in self.children())
+    def study(self):
+        """The study that runs, or None."""
+        return next((child for child in self.children() if "--experiment" in child.words), None)
 
     def begin_study(self, answers):
         """Fill in the dialog, once it is there. -> whether the study has begun"""
@@ -225,7 +228,7 @@ class Start(WindowCase):
         """Press Escape until the study has ended."""
         self.tool("key", "Escape")
         time.sleep(0.2)
-        return not self.study_runs()
+        return not self.study()
 
 
 if __name__ == "__main__":
