@@ -323,6 +323,19 @@ enum gz_result gz_contrasts_measure(const struct gz_plan *plan, size_t from,
 	return GZ_OK;
 }
 
+enum gz_result gz_contrasts_plan_round(struct gz_plan *plan, size_t *first,
+				       const struct gz_lattices *lattices,
+				       struct gz_workers *workers, struct gz_contrasts *contrasts)
+{
+	const size_t tiles = plan->tile_count;
+	enum gz_result result = gz_contrasts_measure(plan, *first, lattices, workers, contrasts);
+	if (result == GZ_OK)
+		result = gz_plan_refine(plan, *first, contrasts->of);
+	if (result == GZ_OK)
+		*first = tiles;
+	return result;
+}
+
 void gz_contrasts_free(struct gz_contrasts *contrasts)
 {
 	free(contrasts->of);

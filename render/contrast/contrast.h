@@ -46,6 +46,18 @@ enum gz_result gz_contrasts_measure(const struct gz_plan *plan, size_t from,
 				    const struct gz_lattices *lattices, struct gz_workers *workers,
 				    struct gz_contrasts *out_contrasts);
 
+/**
+ * Plan the next round of rays: measure the tiles of the last one, and refine the plan.
+ *
+ * @param first  of the last round's tiles; on success the first of the next round's, or
+ *               plan->tile_count if the plan stays as it is
+ * @param lattices, workers, contrasts  see gz_contrasts_measure()
+ * @return the failures of gz_contrasts_measure() and gz_plan_refine()
+ */
+enum gz_result gz_contrasts_plan_round(struct gz_plan *plan, size_t *first,
+				       const struct gz_lattices *lattices,
+				       struct gz_workers *workers, struct gz_contrasts *contrasts);
+
 /** Free and zero. */
 void gz_contrasts_free(struct gz_contrasts *contrasts);
 

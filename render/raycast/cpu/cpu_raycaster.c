@@ -538,15 +538,11 @@ static enum gz_result cast_further_rounds(struct cpu_raycaster *cpu, struct gz_p
 					  struct cast_job *job)
 {
 	for (int round = 1; round < gz_plan_rounds(plan); round++) {
-		const size_t tiles = plan->tile_count;
-		enum gz_result result = gz_contrasts_measure(plan, job->first, &cpu->lattices,
-							     cpu->workers, &cpu->contrasts);
-		if (result == GZ_OK)
-			result = gz_plan_refine(plan, job->first, cpu->contrasts.of);
-		if (result != GZ_OK || plan->tile_count == tiles)
+		const enum gz_result result = gz_contrasts_plan_round(
+			plan, &job->first, &cpu->lattices, cpu->workers, &cpu->contrasts);
+		if (result != GZ_OK || job->first == plan->tile_count)
 			return result;
-		job->first = tiles;
-		gz_lattices_unmark(&cpu->lattices, plan, tiles);
+		gz_lattices_unmark(&cpu->lattices, plan, job->first);
 		cast_tiles(cpu, job);
 	}
 	return GZ_OK;

@@ -31,8 +31,8 @@ enum gz_result gz_gl_rounds_refine(struct gz_gl_rounds *rounds, const struct gz_
 	gz_lattices_unmark(lattices, plan, job->first);
 	for (size_t i = job->first; i < plan->tile_count; i++)
 		gz_lattices_mark(lattices, &plan->tiles[i]);
-	result = gz_contrasts_measure(plan, job->first, lattices, job->workers, &rounds->contrasts);
-	return result == GZ_OK ? gz_plan_refine(plan, job->first, rounds->contrasts.of) : result;
+	size_t first = job->first;
+	return gz_contrasts_plan_round(plan, &first, lattices, job->workers, &rounds->contrasts);
 }
 
 struct gz_plan gz_gl_rounds_part(const struct gz_plan *plan, size_t first)
