@@ -62,6 +62,7 @@ static struct gz_surface_shot surface_shot_of(const struct gz_shot *shot)
 		.camera = shot->camera,
 		.rays = shot->settings,
 		.plan = shot->plan,
+		.refined = shot->refined,
 		.keeps_rays = shot->keeps_rays,
 		.hits = shot->hits,
 		.shades = shot->shades,
@@ -89,6 +90,17 @@ static bool draws_on_device(const struct isosurface_drawer *self, const struct g
 	const struct gz_ray_params *rays = shot->settings;
 	return self->raster &&
 	       (rays->surface.source != GZ_SURFACE_VOXELS || !gz_surface_caster_present());
+}
+
+/* Rays refine plans, rectangles do not. What glass bends differs from ray to ray however near they
+ * are, so few first rays tell nothing of it (docs/results.md). */
+static double isosurface_bound_plan(struct gz_drawer *drawer, const struct gz_shot *shot,
+				    struct gz_plan_request *request)
+{
+	const struct gz_ray_params *rays = shot->settings;
+	request->refines = !draws_on_device(isosurface_of(drawer), shot) &&
+			   rays->surface.material != GZ_MATERIAL_GLASS;
+	return 0;
 }
 
 static enum gz_result isosurface_draw(struct gz_drawer *drawer, const struct gz_shot *shot,
@@ -183,6 +195,7 @@ static void isosurface_destroy(struct gz_drawer *drawer)
 
 static const struct gz_drawer_ops isosurface_ops = {
 	.show = isosurface_show,
+	.bound_plan = isosurface_bound_plan,
 	.draw = isosurface_draw,
 	.cast_hits = isosurface_cast_hits,
 	.shade = isosurface_shade,

@@ -27,6 +27,7 @@ struct stage {
 	struct gz_camera camera;
 	struct gz_ray_params rays;
 	struct gz_foveation foveation;
+	bool refines;
 	struct gz_plan plan;
 	struct gz_image image;
 	struct gz_plane depth, ids;
@@ -72,11 +73,13 @@ static void draw_with(struct gz_surface_caster *caster, struct stage *stage)
 		.camera = &stage->camera,
 		.rays = &stage->rays,
 		.plan = &stage->plan,
+		.refined = &stage->plan,
 	};
 	const struct gz_surface_planes planes = { &stage->depth, &stage->ids };
-	assert_int_equal(
-		gz_plan_make(&stage->foveation, &display, gaze, WIDTH, HEIGHT, &stage->plan),
-		GZ_OK);
+	struct gz_plan_request request =
+		gz_plan_request_make(&stage->foveation, &display, gaze, WIDTH, HEIGHT);
+	request.refines = stage->refines;
+	assert_int_equal(gz_plan_update(&request, &stage->plan), GZ_OK);
 	assert_int_equal(
 		gz_surface_caster_draw(caster, &shot, &stage->image, &planes, &stage->stats),
 		GZ_OK);
@@ -312,13 +315,34 @@ static bool same_pixel(const struct gz_image *a, const struct gz_image *b, int x
 	return same;
 }
 
+/* The rays of all tiles show what a ray for every pixel shows there. Returns how many. */
+static size_t check_rays(const struct stage *full, const struct stage *coarse)
+{
+	size_t compared = 0;
+	for (size_t i = 0; i < coarse->plan.tile_count; i++) {
+		const struct gz_tile *tile = &coarse->plan.tiles[i];
+		const int spacing = coarse->plan.layers[tile->layer].spacing;
+		for (int k = 0; k < GZ_TILE_EDGE * GZ_TILE_EDGE && !tile->replaced; k++) {
+			const int x = tile->x + gz_tile_columns[tile->pattern][k] * spacing;
+			const int y = tile->y + gz_tile_rows[k] * spacing;
+			if (x >= WIDTH || y >= HEIGHT)
+				continue;
+			compared++;
+			if (!same_pixel(&full->image, &coarse->image, x, y))
+				fail_msg("the ray at %d, %d differs", x, y);
+			assert_int_equal(full->ids.words[y * WIDTH + x],
+					 coarse->ids.words[y * WIDTH + x]);
+		}
+	}
+	return compared;
+}
+
 static void plan_casts_the_same_rays_as_every_pixel(void **state)
 {
 	(void)state;
 	struct gz_volume volume = field_volume(field_ring, BALL_DIMS, EVEN, GZ_VOXEL_U16);
 	const struct gz_object object = object_of(&volume);
 	struct stage full, coarse;
-	size_t compared = 0;
 	set_up_stage(&full);
 	set_up_stage(&coarse);
 	full.rays.surface.shadows = coarse.rays.surface.shadows = true;
@@ -329,25 +353,86 @@ static void plan_casts_the_same_rays_as_every_pixel(void **state)
 	if (coarse.stats.rays >= full.stats.rays / 2)
 		fail_msg("%d of %d rays", (int)coarse.stats.rays, (int)full.stats.rays);
 	assert_true(full.stats.prepare_ms > 0);
-	for (size_t i = 0; i < coarse.plan.tile_count; i++) {
-		const struct gz_tile *tile = &coarse.plan.tiles[i];
-		const int spacing = coarse.plan.layers[tile->layer].spacing;
-		for (int k = 0; k < GZ_TILE_EDGE * GZ_TILE_EDGE; k++) {
-			const int x = tile->x + gz_tile_columns[tile->pattern][k] * spacing;
-			const int y = tile->y + gz_tile_rows[k] * spacing;
-			if (x >= WIDTH || y >= HEIGHT)
-				continue;
-			compared++;
-			if (!same_pixel(&full.image, &coarse.image, x, y))
-				fail_msg("the ray at %d, %d differs", x, y);
-			assert_int_equal(full.ids.words[y * WIDTH + x],
-					 coarse.ids.words[y * WIDTH + x]);
-		}
-	}
-	assert_true(compared > 1000);
+	assert_true(check_rays(&full, &coarse) > 1000);
 	gz_surface_caster_destroy(&caster);
 	take_down_stage(&full);
 	take_down_stage(&coarse);
+	gz_volume_free(&volume);
+}
+
+static int sum_of_differences(const struct gz_image *a, const struct gz_image *b)
+{
+	int sum = 0;
+	for (int i = 0; i < 4 * WIDTH * HEIGHT; i++)
+		sum += abs(a->pixels[i] - b->pixels[i]);
+	return sum;
+}
+
+/* Draw by a method, with rounds or without, by so many threads. */
+static void draw_by_method(const struct gz_object *object, int method, bool refines, int threads,
+			   struct stage *stage)
+{
+	foveate(&stage->foveation);
+	stage->foveation.acuity_slope = 0.15;
+	stage->foveation.method = method;
+	stage->foveation.edge_contrast = 0.3;
+	stage->foveation.contrast_threshold = 0.05; /* coarse pixels show steep shades */
+	stage->refines = refines;
+	struct gz_surface_caster *caster = caster_of(object, 1, threads, NULL);
+	draw_with(caster, stage);
+	gz_surface_caster_destroy(&caster);
+}
+
+static void rays_are_added_where_surfaces_have_edges(void **state)
+{
+	(void)state;
+	struct gz_volume volume = field_volume(field_ring, BALL_DIMS, EVEN, GZ_VOXEL_U16);
+	const struct gz_object object = object_of(&volume);
+	struct stage full, once, edges, alone;
+	set_up_stage(&full);
+	set_up_stage(&once);
+	set_up_stage(&edges);
+	set_up_stage(&alone);
+	draw_objects(&object, 1, &full);
+	draw_by_method(&object, GZ_METHOD_ACUITY, false, 2, &once);
+	draw_by_method(&object, GZ_METHOD_ACUITY, true, 2, &edges);
+	draw_by_method(&object, GZ_METHOD_ACUITY, true, 1, &alone);
+	assert_true(edges.stats.rays > once.stats.rays);
+	assert_true(edges.stats.rays < full.stats.rays / 2);
+	assert_true(check_rays(&full, &edges) > 1000);
+	assert_same_stage(&edges, &alone);
+	const int before = sum_of_differences(&full.image, &once.image);
+	const int after = sum_of_differences(&full.image, &edges.image);
+	if (after > 0.7 * before)
+		fail_msg("differences sum up to %d, without rays at edges to %d", after, before);
+	take_down_stage(&full);
+	take_down_stage(&once);
+	take_down_stage(&edges);
+	take_down_stage(&alone);
+	gz_volume_free(&volume);
+}
+
+/* A ball from so near that it fills the picture. */
+static void contrast_casts_fewer_rays_at_flat_surfaces(void **state)
+{
+	(void)state;
+	struct gz_volume volume = field_volume(field_ball, BALL_DIMS, EVEN, GZ_VOXEL_U16);
+	const struct gz_object object = object_of(&volume);
+	struct stage full, once, rounds;
+	set_up_stage(&full);
+	set_up_stage(&once);
+	set_up_stage(&rounds);
+	full.camera.fov_deg = once.camera.fov_deg = rounds.camera.fov_deg = 15;
+	draw_objects(&object, 1, &full);
+	draw_by_method(&object, GZ_METHOD_CONTRAST, false, 2, &once);
+	draw_by_method(&object, GZ_METHOD_CONTRAST, true, 2, &rounds);
+	if (rounds.stats.rays > once.stats.rays * 8 / 10)
+		fail_msg("%d rays, by acuity %d", (int)rounds.stats.rays, (int)once.stats.rays);
+	assert_true(rounds.plan.tile_count > rounds.plan.first_round.tile_count);
+	assert_true(check_rays(&full, &rounds) > 500);
+	take_down_stage(&full);
+	take_down_stage(&once);
+	take_down_stage(&rounds);
 	gz_volume_free(&volume);
 }
 
@@ -746,6 +831,8 @@ TEST_SUITE(surface_cast)
 		cmocka_unit_test(ball_and_ring_have_the_depth_and_normals_of_their_formulas),
 		cmocka_unit_test(any_number_of_threads_makes_the_same_picture),
 		cmocka_unit_test(plan_casts_the_same_rays_as_every_pixel),
+		cmocka_unit_test(rays_are_added_where_surfaces_have_edges),
+		cmocka_unit_test(contrast_casts_fewer_rays_at_flat_surfaces),
 		cmocka_unit_test(
 			shadow_rays_that_are_not_cast_are_valid_with_every_instruction_set),
 		cmocka_unit_test(ball_casts_a_round_shadow_and_none_on_its_lit_side),

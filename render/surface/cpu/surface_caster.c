@@ -9,6 +9,7 @@
 
 #include "base/clock.h"
 #include "base/workers.h"
+#include "render/contrast/contrast.h"
 #include "render/mesh/isosurface.h"
 #include "render/raycast/cpu/cast.h"
 #include "render/raycast/cpu/cpu_raycaster.h"
@@ -63,6 +64,7 @@ struct gz_surface_caster {
 	struct gz_surface_cast own; /* what the shade of the picture reads */
 	double shade_ms;            /* for surfaces, since the last picture */
 	struct gz_lattices lattices[PLANE_COUNT];
+	struct gz_contrasts contrasts; /* of the tiles of a round */
 	struct gz_ray_content content; /* of the last picture */
 	struct gz_kept_tiles kept;
 	char description[64];
@@ -73,6 +75,7 @@ struct surface_job {
 	struct gz_surface_cast cast;
 	gz_surface_tile_function *tile;
 	const struct gz_plan *plan;
+	size_t first;                 /* tile of this round */
 	double coherent_spacing;      /* greatest, px: gz_surface_tile.coherent */
 	struct gz_ray_hits *hits;     /* NULL: not wanted */
 	struct gz_lattices *lattices; /* PLANE_COUNT; those without a plane are not filled */
@@ -459,13 +462,38 @@ static uint64_t cast_surface_tile(const struct surface_job *job, size_t number)
 static void cast_surface_part(void *user, size_t part, int worker)
 {
 	struct surface_job *job = user;
-	const size_t from = part * TILES_A_PART;
+	const size_t from = job->first + part * TILES_A_PART;
 	const size_t end = from + TILES_A_PART;
 	uint64_t kept_rays = 0;
 	(void)worker;
 	for (size_t i = from; i < end && i < job->plan->tile_count; i++)
 		kept_rays += cast_surface_tile(job, i);
 	atomic_fetch_add_explicit(&job->kept_rays, kept_rays, memory_order_relaxed);
+}
+
+static void cast_surface_tiles(struct gz_surface_caster *caster, struct surface_job *job)
+{
+	gz_workers_run(caster->workers, cast_surface_part, job,
+		       (job->plan->tile_count - job->first + TILES_A_PART - 1) / TILES_A_PART);
+}
+
+/* Refine the plan where the colours of the last round's rays differ, and cast the new tiles, round
+ * by round. */
+static enum gz_result cast_further_rounds(struct gz_surface_caster *caster, struct gz_plan *plan,
+					  struct surface_job *job)
+{
+	for (int round = 1; round < gz_plan_rounds(plan); round++) {
+		const enum gz_result result =
+			gz_contrasts_plan_round(plan, &job->first, &job->lattices[PLANE_COLOURS],
+						caster->workers, &caster->contrasts);
+		if (result != GZ_OK || job->first == plan->tile_count)
+			return result;
+		for (int plane = 0; plane < PLANE_COUNT; plane++)
+			if (job->words[plane])
+				gz_lattices_unmark(&job->lattices[plane], plan, job->first);
+		cast_surface_tiles(caster, job);
+	}
+	return GZ_OK;
 }
 
 /* Make room for the picture and the planes that are wanted. */
@@ -613,8 +641,11 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	fill_surface_cast(caster, shot, &frame, &job.cast);
 	job.coherent_spacing = coherent_spacing(caster, &job.cast.frame);
 	job.kept = find_kept_tiles(caster, shot, &frame);
-	gz_workers_run(caster->workers, cast_surface_part, &job,
-		       (plan->tile_count + TILES_A_PART - 1) / TILES_A_PART);
+	cast_surface_tiles(caster, &job);
+	if (shot->refined && plan->refines)
+		result = cast_further_rounds(caster, shot->refined, &job);
+	if (result != GZ_OK)
+		return result;
 	const int64_t cast_ns = gz_clock_now_ns();
 	reconstruct_planes(caster, &job);
 	if (out_stats)
@@ -686,6 +717,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 	free(self->normals);
 	for (int i = 0; i < PLANE_COUNT; i++)
 		gz_lattices_free(&self->lattices[i]);
+	gz_contrasts_free(&self->contrasts);
 	gz_kept_tiles_free(&self->kept);
 	free(self);
 	*caster = NULL;

@@ -26,7 +26,8 @@ struct gz_surface_shot {
 	const struct gz_camera *camera;
 	const struct gz_ray_params *rays; /**< background, light, clip region and surface count */
 	const struct gz_plan *plan;
-	bool keeps_rays; /**< as in struct gz_shot; only rays are kept */
+	struct gz_plan *refined; /**< as in struct gz_shot; only rays refine it */
+	bool keeps_rays;         /**< as in struct gz_shot; only rays are kept */
 	/** Takes what lies nearer than what it has; NULL: not wanted. Only rays fill it. */
 	struct gz_ray_hits *hits;
 	/** What others in the picture keep back of the light. Only rays look it up. */
