@@ -92,8 +92,8 @@ static bool draws_on_device(const struct isosurface_drawer *self, const struct g
 	       (rays->surface.source != GZ_SURFACE_VOXELS || !gz_surface_caster_present());
 }
 
-/* Rays refine plans, rectangles do not. What glass bends differs from ray to ray however near they
- * are, so few first rays tell nothing of it (docs/results.md). */
+/* Rays refine plans, the rasteriser does not. Behind glass, neighbouring rays see different things
+ * however near they are, so a few first rays tell nothing (docs/results.md). */
 static double isosurface_bound_plan(struct gz_drawer *drawer, const struct gz_shot *shot,
 				    struct gz_plan_request *request)
 {

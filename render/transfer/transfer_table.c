@@ -199,13 +199,8 @@ int gz_transfer_table_nearest(const struct gz_transfer_table *table, float store
 
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest)
 {
-	/* One entry wider than rounding needs, because kernels compute in single precision. Of the
-	 * usual table whole cells of a pre-integrated one, so that segments show nothing either;
-	 * those of finer tables are wide beside their peaks. */
-	const int cell = table->count == GZ_TRANSFER_TABLE_SIZE
-				 ? GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE
-				 : 1;
-	const int from = entry_at_or_below(table, least, -0.5 - table->rounding) / cell * cell;
-	const int to = entry_at_or_below(table, greatest, 1.5 + table->rounding) / cell * cell;
-	return table->visible_before[to + cell] > table->visible_before[from];
+	/* One entry wider than rounding needs, because kernels compute in single precision. */
+	const int from = entry_at_or_below(table, least, -0.5 - table->rounding);
+	const int to = entry_at_or_below(table, greatest, 1.5 + table->rounding);
+	return table->visible_before[to + 1] > table->visible_before[from];
 }

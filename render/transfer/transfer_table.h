@@ -62,8 +62,7 @@ void gz_transfer_table_step(const struct gz_transfer_table *table, double length
 /** The entry nearest to a stored value. */
 int gz_transfer_table_nearest(const struct gz_transfer_table *table, float stored);
 
-/** Whether any stored value from @p least to @p greatest has opacity, or shares a cell of a
- *  pre-integrated table with one that has (not with finer tables, whose peaks are narrower). */
+/** Whether any stored value from @p least to @p greatest has opacity. */
 bool gz_transfer_table_shows(const struct gz_transfer_table *table, double least, double greatest);
 
 #endif

@@ -175,6 +175,9 @@ static void segments_side_by_side_are_those_of_each_ray(void **state)
 			snprintf(what, sizeof what, "rate %g, spacing %d", rates[i / 3],
 				 spacings[i % 3]);
 			check_close(&scene, &bricks, *set, what, 2);
+			scene.rays.shading = bricks.rays.shading = GZ_SHADING_GRADIENT;
+			check_close(&scene, &bricks, *set, what, 3);
+			scene.rays.shading = GZ_SHADING_NONE;
 		}
 	small_scene_free(&bricks);
 	small_scene_free(&scene);

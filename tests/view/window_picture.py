@@ -328,7 +328,7 @@ class PictureWindow(WindowCase):
         self.assertTrue(told, done.stdout)
         bare, window, times = (float(told.group(i)) for i in (1, 2, 3))
         self.assertGreater(bare, 0)
-        # Each number is rounded to .005.
+        # Each number is right to .005.
         self.assertAlmostEqual(window / bare, times, delta=0.006 * (1 + (1 + times) / bare))
 
 

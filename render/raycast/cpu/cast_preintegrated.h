@@ -41,13 +41,56 @@ SIMD void take_close_entries(const struct gz_transfer_entry *samples, vi front, 
 	*colour = vi_select(close, own_colour, *colour);
 }
 
-/* Opacity and colour of whole segments between two entries. */
-SIMD void look_up_segments(const struct march *m, vi front, vi back, vm mask, vf *opacity,
+/* How many parts of a segment are no longer than a fine cell along any axis. The same for all rays
+ * with steps of a length. */
+SIMD int parts_within_cells(const struct gz_cast *cast, int step)
+{
+	const float *world = cast->world_per_voxel;
+	const float finest = lesser(world[0], lesser(world[1], world[2]));
+	return 1 + (int)(cast->step[step] / (finest * GZ_FINE_EDGE));
+}
+
+/* Which of the segments that begin at k and are `steps` long, 1 at most, show something: in the
+ * fine cells of either end, or of places between that lie no farther apart than a cell is long. All
+ * others show nothing: neighbouring cells share voxels, so there is no gap between their ranges of
+ * values. */
+SIMD vm segments_show(const struct gz_cast *cast, int step, const struct rays *rays, vf k, vf steps,
+		      vm mask)
+{
+	const int parts = parts_within_cells(cast, step);
+	vm shows = vm_but(mask, mask);
+	for (int i = 0; i <= parts; i++) {
+		const vf along = vf_fma(steps, vf_set((float)i / (float)parts), k);
+		vf at[3];
+		for (int axis = 0; axis < 3; axis++)
+			at[axis] = vf_fma(along, rays->delta[axis], rays->datum[axis]);
+		shows = vm_or(shows, fine_shows(cast, at, mask));
+	}
+	return shows;
+}
+
+/* The opacities of segments of which some are marked (gz_preintegration.marks_doubtful): none if
+ * the fine cells say that they show nothing. Not inlined, since few segments are. */
+static __attribute__((noinline)) vf settle_doubtful(const struct gz_cast *cast, int step,
+						    const struct rays *rays, vf k, vf opacity,
+						    vm marked)
+{
+	const vm shows = cast->fine[0].flags ? segments_show(cast, step, rays, k, vf_set(1), marked)
+					     : marked;
+	const vf settled = vf_select(shows, vf_abs(opacity), vf_set(0));
+	return vf_select(marked, settled, opacity);
+}
+
+/* Opacity and colour of whole segments from k on, between two entries. */
+SIMD void look_up_segments(const struct march *m, vf k, vi front, vi back, vm mask, vf *opacity,
 			   vi *colour)
 {
 	const struct gz_cast *cast = m->cast;
 	load_pairs(cast->preintegrated[m->step], preintegrated_pair(cast, front, back), opacity,
 		   colour);
+	const vm marked = vm_and(mask, vf_less(*opacity, vf_set(0)));
+	if (__builtin_expect(vm_any(marked), 0))
+		*opacity = settle_doubtful(cast, m->step, m->rays, k, *opacity, marked);
 	if (__builtin_expect(cast->fine_entries, 0))
 		take_close_entries(cast->step_table[m->step], front, back, mask, opacity, colour);
 }
@@ -103,7 +146,7 @@ SIMD uint32_t march_segments(const struct march *m, struct light *light)
 		samples += vm_count(takes);
 		vf opacity;
 		vi colour;
-		look_up_segments(m, front, back, takes, &opacity, &colour);
+		look_up_segments(m, k - vf_set(1), front, back, takes, &opacity, &colour);
 		composite_at(m, k - vf_set(0.5F), colour, opacity, takes, light);
 		front = back;
 		known = takes;
@@ -126,6 +169,8 @@ SIMD uint32_t march_segment_part(const struct march *m, vf front, vf steps, stru
 	const vf back = front + steps;
 	const vm empty = look_up_cell(cast, rays, front, mask, &leave);
 	mask = vm_but(mask, vm_but(empty, vf_less(leave, back)));
+	if (cast->fine[0].flags && !cast->fine_entries)
+		mask = segments_show(cast, m->step, rays, front, steps, mask);
 	if (!vm_any(mask))
 		return 0;
 	const struct look_up look_up = stored_look_up(cast);

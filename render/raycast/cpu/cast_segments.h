@@ -2,9 +2,9 @@
  * Segments side by side: all rays of a tile at the same distance from the eye, as their samples
  * march (cast_beam.h, cast_together.h). Segment number n lies between levels n and n + 1. A level
  * that ends one segment begins the next, so it is fetched once. Segments are listed if a fine cell
- * that the beam touches between both levels shows something. All others show nothing: neighbouring
- * cells share voxels, so there is no gap between their ranges of values. A part of the kernel: see
- * cast_kernel.h.
+ * that the beam touches between both levels shows something. A ray's colour does not depend on its
+ * tile: segments that some tiles take and others do not have no opacity (look_up_segments()). A
+ * part of the kernel: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_SEGMENTS_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_SEGMENTS_H
@@ -60,7 +60,8 @@ SIMD void settle_segments(const struct march *m, int part, struct segment_progre
 	const vm needed = vm_and(waiting->within, on->alive[part]);
 	vf opacity;
 	vi colour;
-	look_up_segments(&one, waiting->front, waiting->back, needed, &opacity, &colour);
+	look_up_segments(&one, waiting->front_at, waiting->front, waiting->back, needed, &opacity,
+			 &colour);
 	composite_at(&one, waiting->front_at + vf_set(0.5F), colour, opacity, needed,
 		     &on->light[part]);
 	on->alive[part] = vm_and(on->alive[part], vf_less(vf_set(m->cast->end_transmittance),
@@ -81,7 +82,7 @@ SIMD vm segments_meet(const struct rays *rays, vf k)
 
 #ifdef SIMD_BLOCKS
 
-/* The block that serves the rays of a level. */
+/* A block of voxels for the rays of a level. */
 struct level_block {
 	int wide;
 	__m128 base;
@@ -168,7 +169,9 @@ SIMD uint32_t take_segments_together(const struct march *m, const struct look_up
 {
 	const float *levels = list->levels;
 	uint32_t samples = 0;
-	struct level_block at = first_level_block(m, wide, beam, levels[0]);
+	/* Where the front is known, the first place that is asked for is the far end. */
+	const float first = on->reached == levels[0] ? levels[0] + 1 : levels[0];
+	struct level_block at = first_level_block(m, wide, beam, first);
 	for (int i = 0; i < list->count && segments_alive(on, beam_parts(beam)); i++) {
 		if (on->reached != levels[i]) {
 			find_level_block(m, beam, levels[i], &at);
@@ -183,43 +186,18 @@ SIMD uint32_t take_segments_together(const struct march *m, const struct look_up
 	return samples;
 }
 
-/* How many parts of a segment are no longer than a fine cell along any axis. */
-SIMD int parts_within_cells(const struct rays *rays)
-{
-	float longest = 0;
-	for (int axis = 0; axis < 3; axis++)
-		longest = greater(longest, vf_greatest_of(vf_abs(rays->delta[axis]), rays->hit));
-	return (int)ceilf(longest * (1.0F / GZ_FINE_EDGE) + BEAM_SLACK);
-}
-
-/* Which of the segments that begin at k show something: in the fine cells of either end, or of
- * places between that lie no farther apart than a cell is long. */
-SIMD vm segments_show(const struct march *m, vf k, int parts, vm mask)
-{
-	vm shows = vm_but(mask, mask);
-	for (int i = 0; i <= parts; i++) {
-		const vf along = k + vf_set((float)i / (float)parts);
-		vf at[3];
-		for (int axis = 0; axis < 3; axis++)
-			at[axis] = vf_fma(along, m->rays->delta[axis], m->rays->datum[axis]);
-		shows = vm_or(shows, fine_shows(m->cast, at, mask));
-	}
-	return shows;
-}
-
 /* Take listed segments where rays are too far apart for a block: only those that show something.
  * The beam is of one register. */
 SIMD uint32_t take_scattered_segments(const struct march *m, const struct look_up *look_up,
 				      const struct beam *beam, const struct level_list *list,
 				      struct segment_progress *on)
 {
-	const int parts = parts_within_cells(m->rays);
 	uint32_t samples = 0;
 	for (int i = 0; i < list->count && vm_any(on->alive[0]); i++) {
 		const float level = list->levels[i];
 		const vf k = beam->first[0] + vf_set(level);
 		const vm begins = vm_and(segments_begin(m->rays, k), on->alive[0]);
-		const vm shows = segments_show(m, k, parts, begins);
+		const vm shows = segments_show(m->cast, m->step, m->rays, k, vf_set(1), begins);
 		if (!vm_any(shows))
 			continue;
 		vi front = on->entry[0];

@@ -10,6 +10,11 @@
 
 /** Zero-initialised holds nothing. */
 struct gz_preintegration {
+	/** Negate the opacity of segments whose cells show something although the values at their
+	 * ends, and those between, may not: only some entries of the cells at their ends show
+	 * something. Set it before tables are made. Those of finer transfer tables are not marked.
+	 */
+	bool marks_doubtful;
 	bool summed;
 	struct gz_transfer_sums *sums;
 	struct gz_transfer_entry *extinction;

@@ -642,7 +642,8 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	job.coherent_spacing = coherent_spacing(caster, &job.cast.frame);
 	job.kept = find_kept_tiles(caster, shot, &frame);
 	cast_surface_tiles(caster, &job);
-	if (shot->refined && plan->refines)
+	/* Contrasts are those of colours, and hits are told for the first round's tiles. */
+	if (shot->refined && plan->refines && image && !shot->hits)
 		result = cast_further_rounds(caster, shot->refined, &job);
 	if (result != GZ_OK)
 		return result;
