@@ -1,8 +1,8 @@
 /*
  * Marching side by side: all rays of a tile at the same distance from the eye. A level is one step
- * of all rays, counted from the first ray's first sample, or from the beginning of its first segment. As many levels as lanes are tested at a
- * time for the tile as a whole, and those that show something are listed before any is sampled. A
- * part of the kernel: see cast_kernel.h.
+ * of all rays, counted from the first ray's first sample, or from the beginning of its first
+ * segment. As many levels as lanes are tested at a time for the tile as a whole, and those that
+ * show something are listed before any is sampled. A part of the kernel: see cast_kernel.h.
  */
 #ifndef GZ_RENDER_RAYCAST_CPU_CAST_BEAM_H
 #define GZ_RENDER_RAYCAST_CPU_CAST_BEAM_H

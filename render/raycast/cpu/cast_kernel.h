@@ -5,10 +5,10 @@
  * (cast_portable.c, cast_avx2.c, cast_avx512.c) includes the set's vocabulary (simd_avx2.h, ...),
  * which defines vectors of floats (vf), of integers (vi) and masks (vm) with their operations, then
  * this file, and is compiled with the set's flags. gz_cast_kernels_find() chooses at run time. Rays
- * march side by side (cast_beam.h); sets with wide permutations (SIMD_BLOCKS) fetch voxels by
- * blocks (cast_together.h). Within a
- * set, DEFINE_TILE makes one kernel for each voxel type, interpolation and variant; these are
- * constants of the kernel, so that the compiler drops what it does not need.
+ * march side by side (cast_beam.h, for segments cast_segments.h); sets with wide permutations
+ * (SIMD_BLOCKS) fetch voxels by blocks (cast_together.h). Within a set, DEFINE_TILE makes one
+ * kernel for each voxel type, interpolation and variant; these are constants of the kernel, so that
+ * the compiler drops what it does not need.
  *
  * A ray is cut into segments of one step, from where it enters the box, or a jitter before. A
  * sample lies in the middle of each, at k + 1/2 steps. Where the box or the clip region cuts a
