@@ -185,12 +185,13 @@ struct progress {
 	struct light *light;
 };
 
-SIMD int beam_alive(const struct progress *on, int parts)
+/* Whether any ray of a beam's registers is alive. */
+SIMD int beam_alive(const vm alive[TILE_PARTS], int parts)
 {
-	vm alive = on->alive[0];
+	vm any = alive[0];
 	for (int part = 1; part < parts; part++)
-		alive = vm_or(alive, on->alive[part]);
-	return vm_any(alive);
+		any = vm_or(any, alive[part]);
+	return vm_any(any);
 }
 
 /* Add the waiting sample of a register. */
