@@ -186,12 +186,12 @@ struct progress {
 };
 
 /* Whether any ray of a beam's registers is alive. */
-SIMD int beam_alive(const vm alive[TILE_PARTS], int parts)
+SIMD int beam_alive(const struct beam *beam, const vm alive[TILE_PARTS])
 {
-	vm any = alive[0];
-	for (int part = 1; part < parts; part++)
-		any = vm_or(any, alive[part]);
-	return vm_any(any);
+	int any = 0;
+	for (int part = 0; part < beam_parts(beam); part++)
+		any |= vm_any(alive[part]);
+	return any;
 }
 
 /* Add the waiting sample of a register. */

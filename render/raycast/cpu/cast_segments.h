@@ -164,7 +164,7 @@ SIMD uint32_t take_segments_together(const struct march *m, const struct look_up
 	/* Where the front is known, the first place that is asked for is the far end. */
 	const float first = on->reached == levels[0] ? levels[0] + 1 : levels[0];
 	struct level_block at = first_level_block(m, wide, beam, first);
-	for (int i = 0; i < list->count && beam_alive(on->alive, beam_parts(beam)); i++) {
+	for (int i = 0; i < list->count && beam_alive(beam, on->alive); i++) {
 		if (on->reached != levels[i]) {
 			find_level_block(m, beam, levels[i], &at);
 			for (int part = 0; part < beam_parts(beam); part++)
@@ -244,7 +244,7 @@ SIMD uint32_t march_beam_segments(const struct march *m, const struct look_up *l
 		on.before[part] =
 			(struct waiting_segments) { vf_set(0), vi_set(0), vi_set(0), none };
 	}
-	while (beam_alive(on.alive, beam_parts(ends)) && list_levels(m->cast, around, &from, &list))
+	while (beam_alive(ends, on.alive) && list_levels(m->cast, around, &from, &list))
 		samples += take_listed_segments(m, look_up, company, ends, &list, &on);
 	for (int part = 0; part < beam_parts(ends); part++)
 		settle_segments(m, part, &on);

@@ -88,7 +88,7 @@ SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up
 	uint32_t samples = 0;
 	struct block block;
 	__m128 base = beam_block(m, wide, beam, levels[0], &block);
-	for (int i = 0; i < count && beam_alive(on->alive, beam_parts(beam)); i++) {
+	for (int i = 0; i < count && beam_alive(beam, on->alive); i++) {
 		if (!block_serves(wide, beam, levels[i], base))
 			base = beam_block(m, wide, beam, levels[i], &block);
 		for (int part = 0; part < beam_parts(beam); part++)
@@ -167,7 +167,7 @@ SIMD uint32_t take_levels(const struct march *m, const struct look_up *look_up,
 	uint32_t samples = 0;
 	if (company == SCATTERED)
 		return take_scattered(m, look_up, beam, list, on);
-	for (int i = 0; i < list->count && beam_alive(on->alive, beam_parts(beam)); i++)
+	for (int i = 0; i < list->count && beam_alive(beam, on->alive); i++)
 		for (int part = 0; part < beam_parts(beam); part++)
 			samples += take_level(m, look_up, beam, list->levels[i], part, on);
 	return samples;
@@ -188,7 +188,7 @@ SIMD uint32_t march_beam(const struct march *m, const struct look_up *look_up,
 		on.alive[part] = rays_alive(m, &m->rays[part], &light[part]);
 		on.before[part] = none_waiting();
 	}
-	while (beam_alive(on.alive, beam_parts(beam)) && list_levels(m->cast, beam, &from, &list)) {
+	while (beam_alive(beam, on.alive) && list_levels(m->cast, beam, &from, &list)) {
 		samples += take_levels(m, look_up, company, beam, &list, &on);
 	}
 	for (int part = 0; part < beam_parts(beam); part++)
