@@ -139,6 +139,30 @@ struct small_scene small_scene_constant(int edge, double opacity)
 	return scene;
 }
 
+struct small_scene small_scene_ball_in_hidden_matter(void)
+{
+	enum { EDGE = 40 };
+	struct small_scene scene = base_scene(EDGE, EDGE, EDGE, GZ_VOXEL_U8);
+	uint8_t *voxels = scene.volume.voxels;
+	for (int z = 0; z < EDGE; z++)
+		for (int y = 0; y < EDGE; y++)
+			for (int x = 0; x < EDGE; x++) {
+				const int u = x - 20, v = y - 20, w = z - 20;
+				*voxels++ = u * u + v * v + w * w < 64 ? 120 : 60;
+			}
+	scene.volume.stored_min = 0;
+	scene.volume.stored_max = 255;
+	scene.transfer = (struct gz_transfer) {
+		.count = 3,
+		.points = { { 966.0 / 4095, { 0, 0, 0 }, 0 },
+			    { 966.0 / 4095, { 1, 0.8, 0.3 }, 0.6 },
+			    { 1, { 1, 1, 1 }, 0.6 } },
+	};
+	scene.foveation.method = GZ_METHOD_STANDARD;
+	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+	return scene;
+}
+
 const char *small_scene_backend(void)
 {
 	const char *backend = getenv("GZ_TEST_BACKEND");

@@ -32,6 +32,10 @@ struct small_scene small_scene_coloured(int nx, int ny, int nz, enum gz_volume_c
 /** Every voxel the same, @p opacity per voxel length. */
 struct small_scene small_scene_constant(int edge, double opacity);
 
+/** A ball in matter that shows nothing, by every pixel and pre-integrated. A wall of the transfer
+ * function lies in the cell of the pre-integrated table that the matter's value shares. */
+struct small_scene small_scene_ball_in_hidden_matter(void);
+
 /** The backend that this run tests: "cpu", unless the environment's GZ_TEST_BACKEND says otherwise.
  */
 const char *small_scene_backend(void);

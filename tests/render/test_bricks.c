@@ -183,6 +183,17 @@ static void segments_side_by_side_are_those_of_each_ray(void **state)
 	small_scene_free(&scene);
 }
 
+static void values_that_show_nothing_stay_bare_in_bricks(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_ball_in_hidden_matter();
+	struct small_scene bricks = as_bricks(&scene, 0);
+	for (const char *const *set = small_scene_simd_sets(); *set; set++)
+		check_same(&scene, &bricks, *set, "hidden matter");
+	small_scene_free(&bricks);
+	small_scene_free(&scene);
+}
+
 static void levels_of_detail_are_those_of_the_volume_in_memory(void **state)
 {
 	(void)state;
@@ -606,6 +617,7 @@ TEST_SUITE(bricks)
 		cmocka_unit_test(picture_of_all_bricks_is_that_of_the_volume_in_memory),
 		cmocka_unit_test(shaded_clipped_and_preintegrated_it_is_the_same),
 		cmocka_unit_test(segments_side_by_side_are_those_of_each_ray),
+		cmocka_unit_test(values_that_show_nothing_stay_bare_in_bricks),
 		cmocka_unit_test(levels_of_detail_are_those_of_the_volume_in_memory),
 		cmocka_unit_test(eye_inside_sees_the_same),
 		cmocka_unit_test(without_bricks_every_pixel_is_that_of_the_coarsest_level),

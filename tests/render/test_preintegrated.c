@@ -418,32 +418,6 @@ static void picture_is_the_same_bits_for_any_number_of_threads(void **state)
 	small_scene_free(&scene);
 }
 
-/* A ball in matter that shows nothing, though its value shares a cell of the table with what does:
- * a wall lies in the cell of the 8-bit value 60. */
-static struct small_scene ball_in_hidden_matter(void)
-{
-	enum { EDGE = 40 };
-	struct small_scene scene = small_scene_waves(EDGE, EDGE, EDGE, GZ_VOXEL_U8);
-	uint8_t *voxels = scene.volume.voxels;
-	for (int z = 0; z < EDGE; z++)
-		for (int y = 0; y < EDGE; y++)
-			for (int x = 0; x < EDGE; x++) {
-				const int u = x - 20, v = y - 20, w = z - 20;
-				*voxels++ = u * u + v * v + w * w < 64 ? 120 : 60;
-			}
-	scene.volume.stored_min = 0;
-	scene.volume.stored_max = 255;
-	scene.transfer = (struct gz_transfer) {
-		.count = 3,
-		.points = { { 966.0 / 4095, { 0, 0, 0 }, 0 },
-			    { 966.0 / 4095, { 1, 0.8, 0.3 }, 0.6 },
-			    { 1, { 1, 1, 1 }, 0.6 } },
-	};
-	scene.foveation.method = GZ_METHOD_STANDARD;
-	scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
-	return scene;
-}
-
 static void draw_by_set(const struct small_scene *scene, const char *set, struct gz_image *image)
 {
 	struct gz_raycaster *renderer = small_scene_renderer(scene, 2, set);
@@ -451,31 +425,63 @@ static void draw_by_set(const struct small_scene *scene, const char *set, struct
 	gz_raycaster_destroy(&renderer);
 }
 
-static void values_that_show_nothing_stay_bare(void **state)
+/* The ball's pixels are those of samples, but for segments that meet it between two samples. */
+static void check_bare_around_ball(struct small_scene *scene)
 {
-	(void)state;
 	/* gl does not mark what it doubts: docs/foveation.md. */
 	if (strcmp(small_scene_backend(), "cpu") != 0)
 		skip();
-	struct small_scene scene = ball_in_hidden_matter();
 	for (const char *const *set = small_scene_simd_sets(); *set; set++) {
 		struct gz_image samples = { 0 }, segments = { 0 };
-		scene.rays.integration = GZ_INTEGRATION_SAMPLED;
-		draw_by_set(&scene, *set, &samples);
-		scene.rays.integration = GZ_INTEGRATION_PREINTEGRATED;
-		draw_by_set(&scene, *set, &segments);
+		scene->rays.integration = GZ_INTEGRATION_SAMPLED;
+		draw_by_set(scene, *set, &samples);
+		scene->rays.integration = GZ_INTEGRATION_PREINTEGRATED;
+		draw_by_set(scene, *set, &segments);
 		int ball = 0, fog = 0;
 		for (int i = 0; i < 4 * 96 * 80; i += 4) {
 			const bool bare = memcmp(samples.pixels + i, samples.pixels, 3) == 0;
 			ball += !bare;
 			fog += bare && memcmp(segments.pixels + i, samples.pixels, 3) != 0;
 		}
-		/* Only fine cells that touch the ball. */
-		if (ball < 300 || fog > ball * 2 / 3)
-			fail_msg("%s: %d pixels of fog beside %d of the ball", *set, fog, ball);
+		print_message("%s: %d pixels beside %d of the ball\n", *set, fog, ball);
+		assert_true(ball > 300);
+		assert_true(fog <= ball / 20);
 		gz_image_free(&samples);
 		gz_image_free(&segments);
 	}
+}
+
+static void values_that_show_nothing_stay_bare(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_ball_in_hidden_matter();
+	check_bare_around_ball(&scene);
+	small_scene_free(&scene);
+}
+
+/* A narrow gap in a colour makes the table fine. Matter varies, so that the ends of segments are
+ * entries apart. */
+static void values_that_show_nothing_stay_bare_by_finer_tables(void **state)
+{
+	(void)state;
+	const double wall = 60.2 / 255;
+	struct small_scene scene = small_scene_ball_in_hidden_matter();
+	struct tables *tables = make_tables();
+	uint8_t *voxels = scene.volume.voxels;
+	for (size_t i = 0; i < gz_volume_voxel_count(&scene.volume); i += 4)
+		voxels[i]--;
+	scene.transfer = (struct gz_transfer) {
+		.count = 5,
+		.points = { { wall, { 0, 0, 0 }, 0 },
+			    { wall, { 1, 1, 1 }, 0.6 },
+			    { 0.9, { 1, 1, 1 }, 0.6 },
+			    { 0.90001, { 0, 1, 1 }, 0.6 },
+			    { 0.90002, { 1, 1, 1 }, 0.6 } },
+	};
+	gz_transfer_table_bake(&scene.transfer, &scene.volume, &tables->table);
+	assert_int_equal(tables->table.count, GZ_TRANSFER_TABLE_MOST);
+	check_bare_around_ball(&scene);
+	free_tables(tables);
 	small_scene_free(&scene);
 }
 
@@ -484,7 +490,7 @@ static void rays_show_the_same_in_every_tile(void **state)
 	(void)state;
 	static const double rates[] = { 3, 1, 0.3, 0.15 };
 	static const int spacings[] = { 3, 5, 16 };
-	struct small_scene scene = ball_in_hidden_matter();
+	struct small_scene scene = small_scene_ball_in_hidden_matter();
 	for (const char *const *set = small_scene_simd_sets(); *set; set++)
 		for (int i = 0; i < 12; i++) {
 			struct gz_image every = { 0 }, few = { 0 };
@@ -591,7 +597,7 @@ static void thin_shell_is_lost_by_samples_but_not_by_segments(void **state)
 			      step, 100 * sampled, 100 * preintegrated);
 		assert_true(sampled > 0.1);
 		/* a ray that only grazes the shell may dip into it between two ends */
-		if (preintegrated > (step <= 2 ? 0 : 0.005))
+		if (preintegrated > (step <= 1 ? 0 : 0.01))
 			fail_msg("steps of %d: %g of the shell lost", step, preintegrated);
 	}
 	gz_image_free(&fine);
@@ -686,6 +692,7 @@ TEST_SUITE(preintegrated)
 		cmocka_unit_test(constant_box_keeps_its_brightness_for_any_step),
 		cmocka_unit_test(picture_is_the_same_bits_for_any_number_of_threads),
 		cmocka_unit_test(values_that_show_nothing_stay_bare),
+		cmocka_unit_test(values_that_show_nothing_stay_bare_by_finer_tables),
 		cmocka_unit_test(rays_show_the_same_in_every_tile),
 		cmocka_unit_test(empty_space_takes_no_samples),
 		cmocka_unit_test(thin_shell_is_lost_by_samples_but_not_by_segments),

@@ -60,6 +60,7 @@ struct gz_cast {
 	float entry_last;            /**< greatest number of an entry */
 	int32_t preintegrated_shift; /**< log2 of the entries in a cell of a pre-integrated table */
 	bool fine_entries;           /**< the table has more than GZ_TRANSFER_TABLE_SIZE entries */
+	const uint32_t *visible_before;             /**< see struct gz_transfer_table */
 	const struct gz_transfer_entry *extinction; /**< per voxel length */
 	const struct gz_transfer_entry
 		*step_table[GZ_PLAN_STEPS_MAX]; /**< for each step of the plan */

@@ -41,48 +41,29 @@ SIMD void take_close_entries(const struct gz_transfer_entry *samples, vi front, 
 	*colour = vi_select(close, own_colour, *colour);
 }
 
-/* How many parts of a segment are no longer than a fine cell along any axis. The same for all rays
- * with steps of a length. */
-SIMD int parts_within_cells(const struct gz_cast *cast, int step)
+/* Which of the segments between two entries have an entry between them, or at either end, that
+ * shows something. */
+SIMD vm segments_have_visible(const struct gz_cast *cast, vi front, vi back, vm mask)
 {
-	const float *world = cast->world_per_voxel;
-	const float finest = lesser(world[0], lesser(world[1], world[2]));
-	return 1 + (int)(cast->step[step] / (finest * GZ_FINE_EDGE));
+	const vi low = vi_min(front, back);
+	const vi high = vi_select(vi_less(front, back), back, front);
+	const vi before = vi_gather(cast->visible_before, low, 4, mask);
+	const vi until = vi_gather(cast->visible_before + 1, high, 4, mask);
+	return vm_and(mask, vi_less(before, until));
 }
 
-/* Which of the segments that begin at k and are `steps` long, 1 at most, show something: in the
- * fine cells of either end, or of places between that lie no farther apart than a cell is long. All
- * others show nothing: neighbouring cells share voxels, so there is no gap between their ranges of
- * values. */
-SIMD vm segments_show(const struct gz_cast *cast, int step, const struct rays *rays, vf k, vf steps,
-		      vm mask)
+/* The opacities of segments of which some are marked (struct gz_preintegration): none if no entry
+ * between their ends shows anything. Not inlined, since few segments are marked. */
+static __attribute__((noinline)) vf settle_doubtful(const struct gz_cast *cast, vi front, vi back,
+						    vf opacity, vm marked)
 {
-	const int parts = parts_within_cells(cast, step);
-	vm shows = vm_but(mask, mask);
-	for (int i = 0; i <= parts; i++) {
-		const vf along = vf_fma(steps, vf_set((float)i / (float)parts), k);
-		vf at[3];
-		for (int axis = 0; axis < 3; axis++)
-			at[axis] = vf_fma(along, rays->delta[axis], rays->datum[axis]);
-		shows = vm_or(shows, fine_shows(cast, at, mask));
-	}
-	return shows;
-}
-
-/* The opacities of segments of which some are marked (gz_preintegration.marks_doubtful): none if
- * the fine cells say that they show nothing. Not inlined, since few segments are. */
-static __attribute__((noinline)) vf settle_doubtful(const struct gz_cast *cast, int step,
-						    const struct rays *rays, vf k, vf opacity,
-						    vm marked)
-{
-	const vm shows = cast->fine[0].flags ? segments_show(cast, step, rays, k, vf_set(1), marked)
-					     : marked;
+	const vm shows = segments_have_visible(cast, front, back, marked);
 	const vf settled = vf_select(shows, vf_abs(opacity), vf_set(0));
 	return vf_select(marked, settled, opacity);
 }
 
-/* Opacity and colour of whole segments from k on, between two entries. */
-SIMD void look_up_segments(const struct march *m, vf k, vi front, vi back, vm mask, vf *opacity,
+/* Opacity and colour of whole segments between two entries. */
+SIMD void look_up_segments(const struct march *m, vi front, vi back, vm mask, vf *opacity,
 			   vi *colour)
 {
 	const struct gz_cast *cast = m->cast;
@@ -90,7 +71,7 @@ SIMD void look_up_segments(const struct march *m, vf k, vi front, vi back, vm ma
 		   colour);
 	const vm marked = vm_and(mask, vf_less(*opacity, vf_set(0)));
 	if (__builtin_expect(vm_any(marked), 0))
-		*opacity = settle_doubtful(cast, m->step, m->rays, k, *opacity, marked);
+		*opacity = settle_doubtful(cast, front, back, *opacity, marked);
 	if (__builtin_expect(cast->fine_entries, 0))
 		take_close_entries(cast->step_table[m->step], front, back, mask, opacity, colour);
 }
@@ -146,7 +127,7 @@ SIMD uint32_t march_segments(const struct march *m, struct light *light)
 		samples += vm_count(takes);
 		vf opacity;
 		vi colour;
-		look_up_segments(m, k - vf_set(1), front, back, takes, &opacity, &colour);
+		look_up_segments(m, front, back, takes, &opacity, &colour);
 		composite_at(m, k - vf_set(0.5F), colour, opacity, takes, light);
 		front = back;
 		known = takes;
@@ -169,8 +150,6 @@ SIMD uint32_t march_segment_part(const struct march *m, vf front, vf steps, stru
 	const vf back = front + steps;
 	const vm empty = look_up_cell(cast, rays, front, mask, &leave);
 	mask = vm_but(mask, vm_but(empty, vf_less(leave, back)));
-	if (cast->fine[0].flags && !cast->fine_entries)
-		mask = segments_show(cast, m->step, rays, front, steps, mask);
 	if (!vm_any(mask))
 		return 0;
 	const struct look_up look_up = stored_look_up(cast);
@@ -188,7 +167,8 @@ SIMD uint32_t march_segment_part(const struct march *m, vf front, vf steps, stru
 		take_close_entries(cast->extinction, ends[0], ends[1], mask, &extinction, &colour);
 	const vf length = steps * vf_set(cast->voxel_lengths[m->step]);
 	const vf opacity = vf_set(1) - exp2_negative(extinction * length);
-	const vm visible = vm_and(mask, vf_less(extinction, vf_set(0)));
+	const vm visible = vm_and(segments_have_visible(cast, ends[0], ends[1], mask),
+				  vf_less(extinction, vf_set(0)));
 	composite_at(m, vf_fma(steps, vf_set(0.5F), front), colour, opacity, visible, light);
 	return 2 * vm_count(mask);
 }

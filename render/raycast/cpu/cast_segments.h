@@ -52,8 +52,7 @@ SIMD void settle_segments(const struct march *m, int part, struct segment_progre
 	const vm needed = vm_and(waiting->within, on->alive[part]);
 	vf opacity;
 	vi colour;
-	look_up_segments(&one, waiting->front_at, waiting->front, waiting->back, needed, &opacity,
-			 &colour);
+	look_up_segments(&one, waiting->front, waiting->back, needed, &opacity, &colour);
 	composite_at(&one, waiting->front_at + vf_set(0.5F), colour, opacity, needed,
 		     &on->light[part]);
 	on->alive[part] = vm_and(on->alive[part], vf_less(vf_set(m->cast->end_transmittance),
@@ -178,6 +177,32 @@ SIMD uint32_t take_segments_together(const struct march *m, const struct look_up
 	return samples;
 }
 
+/* How many parts of a segment are no longer than a fine cell along any axis. The same for all rays
+ * with steps of a length. */
+SIMD int parts_within_cells(const struct gz_cast *cast, int step)
+{
+	const float *world = cast->world_per_voxel;
+	const float finest = lesser(world[0], lesser(world[1], world[2]));
+	return 1 + (int)(cast->step[step] / (finest * GZ_FINE_EDGE));
+}
+
+/* Which of the whole segments that begin at k show something: in the fine cells of either end, or
+ * of places between that lie no farther apart than a cell is long. All others show nothing:
+ * neighbouring cells share voxels, so there is no gap between their ranges of values. */
+SIMD vm segments_show(const struct gz_cast *cast, int step, const struct rays *rays, vf k, vm mask)
+{
+	const int parts = parts_within_cells(cast, step);
+	vm shows = vm_but(mask, mask);
+	for (int i = 0; i <= parts; i++) {
+		const vf along = k + vf_set((float)i / (float)parts);
+		vf at[3];
+		for (int axis = 0; axis < 3; axis++)
+			at[axis] = vf_fma(along, rays->delta[axis], rays->datum[axis]);
+		shows = vm_or(shows, fine_shows(cast, at, mask));
+	}
+	return shows;
+}
+
 /* Take listed segments where rays are too far apart for a block: only those that show something.
  * The beam is of one register. */
 SIMD uint32_t take_scattered_segments(const struct march *m, const struct look_up *look_up,
@@ -189,7 +214,7 @@ SIMD uint32_t take_scattered_segments(const struct march *m, const struct look_u
 		const float level = list->levels[i];
 		const vf k = beam->first[0] + vf_set(level);
 		const vm begins = vm_and(segments_begin(m->rays, k), on->alive[0]);
-		const vm shows = segments_show(m->cast, m->step, m->rays, k, vf_set(1), begins);
+		const vm shows = segments_show(m->cast, m->step, m->rays, k, begins);
 		if (!vm_any(shows))
 			continue;
 		vi front = on->entry[0];

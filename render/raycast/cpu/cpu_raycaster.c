@@ -78,6 +78,7 @@ void gz_cast_fill_table(const struct gz_transfer_table *table, struct gz_cast *c
 	cast->preintegrated_shift = __builtin_ctz(GZ_PREINTEGRATED_STRIDE((unsigned)table->count));
 	cast->fine_entries = table->count > GZ_TRANSFER_TABLE_SIZE;
 	cast->extinction = table->entries;
+	cast->visible_before = table->visible_before;
 }
 
 /* A worker's own counts, in a cache line of their own. */

@@ -8,13 +8,18 @@
 #include "render/plan/plan.h"
 #include "render/transfer/transfer_preintegrated.h"
 
-/** Zero-initialised holds nothing. */
+/**
+ * Zero-initialised holds nothing.
+ *
+ * A pair of cells of a table stands for segments between several entries at either end. With
+ * marks_doubtful the opacity is negative where the pair cannot say whether a segment shows
+ * anything: only some entries of the cells at its ends are visible, and none between the cells. The
+ * segment then shows something only if an entry between its ends, or at either end, is visible
+ * (visible_before of struct gz_transfer_table). This holds for the table of extinction, too, which
+ * has no marks.
+ */
 struct gz_preintegration {
-	/** Negate the opacity of segments whose cells show something although the values at their
-	 * ends, and those between, may not: only some entries of the cells at their ends show
-	 * something. Set it before tables are made. Those of finer transfer tables are not marked.
-	 */
-	bool marks_doubtful;
+	bool marks_doubtful; /**< there are such marks; set it before tables are made */
 	bool summed;
 	struct gz_transfer_sums *sums;
 	struct gz_transfer_entry *extinction;
