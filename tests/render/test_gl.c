@@ -193,6 +193,24 @@ static void pre_integrated_pictures_and_levels_of_detail_equal_the_cpus(void **s
 	}
 }
 
+static void pictures_of_hidden_matter_equal_the_cpus(void **state)
+{
+	(void)state;
+	static const double rates[] = { 3, 1, 0.3 };
+	struct small_scene scene = small_scene_ball_in_hidden_matter();
+	struct pair pair = pair_of(&scene);
+	for (int i = 0; i < 3; i++) {
+		scene.rays.ray_sampling_rate = rates[i];
+		small_scene_render(pair.cpu, &scene, 200, 150, &pair.of_cpu, NULL);
+		small_scene_render(pair.gl, &scene, 200, 150, &pair.of_gl, NULL);
+		const int apart = image_pixels_apart(&pair.of_cpu, &pair.of_gl);
+		if (apart * 1000 > 200 * 150)
+			fail_msg("rate %g: %d pixels differ", rates[i], apart);
+	}
+	pair_free(&pair);
+	small_scene_free(&scene);
+}
+
 static void pictures_of_interleaved_steps_equal_the_cpus(void **state)
 {
 	(void)state;
@@ -670,6 +688,7 @@ TEST_SUITE(gl)
 		cmocka_unit_test(
 			pictures_of_colours_as_a_graphics_device_makes_them_equal_the_cpus),
 		cmocka_unit_test(pre_integrated_pictures_and_levels_of_detail_equal_the_cpus),
+		cmocka_unit_test(pictures_of_hidden_matter_equal_the_cpus),
 		cmocka_unit_test(pictures_of_interleaved_steps_equal_the_cpus),
 		cmocka_unit_test(pictures_cut_by_a_plane_equal_the_cpus),
 		cmocka_unit_test(soft_shadows_equal_the_cpus),

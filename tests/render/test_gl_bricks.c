@@ -173,6 +173,16 @@ static void every_way_of_casting_works_by_bricks(void **state)
 	small_scene_free(&scene);
 }
 
+static void hidden_matter_is_as_bare_as_in_the_volume_in_memory(void **state)
+{
+	(void)state;
+	struct small_scene scene = small_scene_ball_in_hidden_matter();
+	struct small_scene bricks = as_bricks(&scene, 0);
+	check_same(&scene, &bricks.volume, (struct raycaster_params) { 0 }, "hidden matter");
+	small_scene_free(&bricks);
+	small_scene_free(&scene);
+}
+
 /* Whether a backend refuses the rays of a scene with a line that names a key. */
 static void check_refused(const char *backend, const struct small_scene *scene, const char *key)
 {
@@ -468,6 +478,7 @@ TEST_SUITE(gl_bricks)
 		cmocka_unit_test(every_brick_of_the_coarsest_level_is_looked_into),
 		cmocka_unit_test(anisotropic_volumes_beyond_the_textures_look_the_same),
 		cmocka_unit_test(every_way_of_casting_works_by_bricks),
+		cmocka_unit_test(hidden_matter_is_as_bare_as_in_the_volume_in_memory),
 		cmocka_unit_test(occlusion_and_shadows_of_a_file_of_bricks_are_refused),
 		cmocka_unit_test(shadows_of_volumes_beyond_the_textures_look_the_same),
 		cmocka_unit_test(levels_of_detail_are_those_of_the_cpu),

@@ -428,9 +428,6 @@ static void draw_by_set(const struct small_scene *scene, const char *set, struct
 /* The ball's pixels are those of samples, but for segments that meet it between two samples. */
 static void check_bare_around_ball(struct small_scene *scene)
 {
-	/* gl does not mark what it doubts: docs/foveation.md. */
-	if (strcmp(small_scene_backend(), "cpu") != 0)
-		skip();
 	for (const char *const *set = small_scene_simd_sets(); *set; set++) {
 		struct gz_image samples = { 0 }, segments = { 0 };
 		scene->rays.integration = GZ_INTEGRATION_SAMPLED;

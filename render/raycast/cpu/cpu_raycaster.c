@@ -205,7 +205,6 @@ static enum gz_result cpu_create(const struct gz_backend_params *params, const s
 		return GZ_ERR_NO_MEM;
 	memset(cpu, 0, sizeof *cpu);
 	cpu->base = (struct gz_raycaster) { .ops = &gz_cpu_raycaster_ops, .log = log };
-	cpu->preintegration.marks_doubtful = true;
 	cpu->wait_for_bricks = params->wait_for_bricks;
 	/* Room for the finest tables; the system gives memory to what is used of it. */
 	cpu->table = calloc(1, sizeof *cpu->table);

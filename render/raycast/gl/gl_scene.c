@@ -162,8 +162,10 @@ static enum gz_result prepare_tables(struct gz_gl_scene *scene, const struct gz_
 	if (rays->integration != GZ_INTEGRATION_PREINTEGRATED)
 		return GZ_OK;
 	struct gz_preintegration *preintegration = &scene->preintegration;
-	result = gz_preintegration_make(preintegration, scene->table, lengths, plan->step_count,
-					gz_gl_scene_workers(scene));
+	result = gz_gl_tables_samples(&scene->tables, scene->table, GZ_GL_NEXT_VISIBLE_ROW, 1);
+	if (result == GZ_OK)
+		result = gz_preintegration_make(preintegration, scene->table, lengths,
+						plan->step_count, gz_gl_scene_workers(scene));
 	if (result != GZ_OK) {
 		gz_err(log, "no memory for pre-integrated tables: take sampled");
 		return result;

@@ -235,8 +235,21 @@ static void prepare_samples(struct gz_gl_tables *tables, int rows)
 	tables->samples = gz_gl_texture(GL_TEXTURE_2D);
 	tables->sample_rows = rows;
 	glTexStorage2D(GL_TEXTURE_2D, 1, GL_RG32UI, GZ_TRANSFER_TABLE_SIZE,
-		       GZ_GL_TABLE_ROWS * rows);
+		       GZ_GL_SAMPLE_ROWS * rows);
 	memset(tables->sample_length, 0, sizeof tables->sample_length);
+}
+
+/* In place of each entry's colour, the number of the first one from it on that shows something; the
+ * table's length if there is none. */
+static void number_next_visible(const struct gz_transfer_table *table,
+				struct gz_transfer_entry *out_entries)
+{
+	uint32_t next = (uint32_t)table->count;
+	for (int i = table->count - 1; i >= 0; i--) {
+		if (table->visible_before[i + 1] > table->visible_before[i])
+			next = (uint32_t)i;
+		out_entries[i] = (struct gz_transfer_entry) { .opacity = 0, .colour = next };
+	}
 }
 
 /* An entry is two words of 32 bits: a float and a colour. */
@@ -253,6 +266,8 @@ enum gz_result gz_gl_tables_samples(struct gz_gl_tables *tables,
 		return GZ_ERR_NO_MEM;
 	if (row < GZ_PLAN_STEPS_MAX)
 		gz_transfer_table_step(table, length, entries);
+	else if (row == GZ_GL_NEXT_VISIBLE_ROW)
+		number_next_visible(table, entries);
 	else
 		memcpy(entries, table->entries, count * sizeof *entries);
 	glBindTexture(GL_TEXTURE_2D, tables->samples);

@@ -65,8 +65,12 @@ void gz_gl_volume_bind(const struct gz_gl_volume *gl, enum gz_voxel_type type);
 /** Delete the textures and zero the struct. */
 void gz_gl_volume_free(struct gz_gl_volume *gl);
 
-/** Rows of tables: one for each step of a plan, and one for extinction. */
+/** Tables of samples and of segments: one for each step of a plan, and one for extinction. */
 #define GZ_GL_TABLE_ROWS (GZ_PLAN_STEPS_MAX + 1)
+
+/** The row of samples after them: for each entry, which one is the next that shows something. */
+#define GZ_GL_NEXT_VISIBLE_ROW GZ_GL_TABLE_ROWS
+#define GZ_GL_SAMPLE_ROWS      (GZ_GL_TABLE_ROWS + 1)
 
 /** Transfer tables as textures, kept by step length; OpenGL's names, 0 = none. Zero-initialised
  * holds nothing. */
@@ -75,15 +79,15 @@ struct gz_gl_tables {
 	int sample_rows; /**< of the texture for each step: a finer table takes several of
 			    GZ_TRANSFER_TABLE_SIZE entries, one after the other */
 	/** Step length of each row or layer, voxel lengths; 0 = not yet filled. */
-	double sample_length[GZ_GL_TABLE_ROWS], segment_length[GZ_GL_TABLE_ROWS];
+	double sample_length[GZ_GL_SAMPLE_ROWS], segment_length[GZ_GL_TABLE_ROWS];
 };
 
 /** The transfer function has changed: all rows are empty. */
 void gz_gl_tables_forget(struct gz_gl_tables *tables);
 
 /** Make sure that row @p row holds @p table for steps of @p length voxel lengths; row
- *  GZ_PLAN_STEPS_MAX holds the extinction, for a length of 1. A row is sample_rows rows of the
- *  texture. GZ_ERR_NO_MEM: out of memory; not logged. */
+ *  GZ_PLAN_STEPS_MAX holds the extinction and GZ_GL_NEXT_VISIBLE_ROW what shows, both for a length
+ *  of 1. A row is sample_rows rows of the texture. GZ_ERR_NO_MEM: out of memory; not logged. */
 enum gz_result gz_gl_tables_samples(struct gz_gl_tables *tables,
 				    const struct gz_transfer_table *table, int row, double length);
 

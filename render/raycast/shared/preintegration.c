@@ -100,9 +100,8 @@ enum gz_result gz_preintegration_make(struct gz_preintegration *preintegration,
 	if (missing_count > 0)
 		gz_transfer_preintegrate(preintegration->sums, missing, missing_count, workers,
 					 tables);
-	if (preintegration->marks_doubtful)
-		for (int i = 0; i < missing_count; i++)
-			mark_doubtful(table, tables[i]);
+	for (int i = 0; i < missing_count; i++)
+		mark_doubtful(table, tables[i]);
 	return result;
 }
 

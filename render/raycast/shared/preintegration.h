@@ -11,15 +11,13 @@
 /**
  * Zero-initialised holds nothing.
  *
- * A pair of cells of a table stands for segments between several entries at either end. With
- * marks_doubtful the opacity is negative where the pair cannot say whether a segment shows
- * anything: only some entries of the cells at its ends are visible, and none between the cells. The
- * segment then shows something only if an entry between its ends, or at either end, is visible
- * (visible_before of struct gz_transfer_table). This holds for the table of extinction, too, which
- * has no marks.
+ * A pair of cells of a table stands for segments between several entries at either end. The opacity
+ * is negative where the pair cannot say whether a segment shows anything: only some entries of the
+ * cells at its ends are visible, and none between the cells. The segment then shows something only
+ * if an entry between its ends, or at either end, is visible (visible_before of struct
+ * gz_transfer_table). This holds for the table of extinction, too, which has no marks.
  */
 struct gz_preintegration {
-	bool marks_doubtful; /**< there are such marks; set it before tables are made */
 	bool summed;
 	struct gz_transfer_sums *sums;
 	struct gz_transfer_entry *extinction;

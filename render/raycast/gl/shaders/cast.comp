@@ -177,7 +177,7 @@ uint march_segments(Ray ray, int step_index, inout Light light)
 			int back = entry_at(ray, k);
 			samples++;
 			uvec2 look = look_up_segment(front, back, step_index);
-			composite(ray, k - 0.5, look.y, uintBitsToFloat(look.x), light);
+			composite(ray, k - 0.5, look.y, abs(uintBitsToFloat(look.x)), light);
 			front = back;
 			if (light.through <= transfer_map.z)
 				return samples;

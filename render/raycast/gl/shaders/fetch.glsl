@@ -30,7 +30,8 @@ layout(binding = 0) uniform sampler3D voxels;
 layout(binding = 0) uniform usampler3D voxels;
 #endif
 layout(binding = 1) uniform usampler3D reaches;   // by macrocell
-layout(binding = 2) uniform usampler2D transfer; // opacity or extinction as bits, colour; one row for each step
+// Opacity or extinction as bits, colour; one row for each step, one of extinction, and NEXT_VISIBLE_ROW.
+layout(binding = 2) uniform usampler2D transfer;
 // Tables of segments, by the cells at their ends; one layer for each step.
 layout(binding = 3) uniform usampler2DArray segments;
 #endif
@@ -194,7 +195,7 @@ uvec2 look_up_entry(int entry, int step_index)
 
 #ifdef SEGMENTS
 // A segment between two entries, from the table of a step's segments, or from that of its samples.
-uvec2 look_up_segment(int front, int back, int step_index)
+uvec2 segment_entry(int front, int back, int step_index)
 {
 #ifdef FINE_TABLE
 	if (float(abs(back - front)) < GZ_CLOSE_ENTRIES)
@@ -204,6 +205,23 @@ uvec2 look_up_segment(int front, int back, int step_index)
 	const int stride = GZ_TRANSFER_TABLE_SIZE / GZ_PREINTEGRATED_SIZE;
 #endif
 	return FETCH(segments, ivec3(back / stride, front / stride, step_index)).rg;
+}
+
+// Whether an entry between two, or either of them, shows something.
+bool segment_has_visible(int front, int back)
+{
+	uint next = look_up_entry(min(front, back), NEXT_VISIBLE_ROW).g;
+	return int(next) <= max(front, back);
+}
+
+// A segment between two entries. The table cannot say whether one of negative opacity shows anything (struct
+// gz_preintegration), nor does an extinction say so: either is 0 here if nothing shows.
+uvec2 look_up_segment(int front, int back, int step_index)
+{
+	uvec2 look = segment_entry(front, back, step_index);
+	if (uintBitsToFloat(look.x) < 0.0 && !segment_has_visible(front, back))
+		look.x = 0U;
+	return look;
 }
 #endif
 
