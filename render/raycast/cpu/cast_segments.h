@@ -300,12 +300,11 @@ SIMD uint32_t march_beams_of_segments(const struct march *m, struct light light[
 	return samples;
 }
 
-/* All whole segments of a tile. The cells of a pre-integrated table are wide beside the peaks of a
- * finer transfer table, so what fine cells say of such a table does not hold for segments. */
+/* All whole segments of a tile. */
 SIMD uint32_t march_tile_segments(const struct march *m, struct light light[TILE_PARTS])
 {
 	uint32_t samples = 0;
-	if (m->cast->fine[0].flags && !m->cast->fine_entries)
+	if (m->cast->fine[0].flags)
 		return march_beams_of_segments(m, light);
 	for (int part = 0; part < TILE_PARTS; part++) {
 		const struct march one = march_of_part(m, part);
