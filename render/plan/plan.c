@@ -12,8 +12,9 @@ static bool request_valid(const struct gz_plan_request *request)
 	    request->height > GZ_IMAGE_SIDE_MAX)
 		return false;
 	return request->rays_per_px >= 0.0625 && request->rays_per_px <= 16 &&
-	       request->scale >= 1 && request->scale <= GZ_PLAN_SCALE_MAX && request->widen >= 0 &&
-	       request->widen <= 1 && request->steps_per_px >= 0 && request->steps_per_px <= 1 &&
+	       request->scale >= 1 && request->scale <= GZ_PLAN_SCALE_MAX && request->finer >= 1 &&
+	       request->finer <= GZ_PLAN_FINER_MAX && request->widen >= 0 && request->widen <= 1 &&
+	       request->steps_per_px >= 0 && request->steps_per_px <= 1 &&
 	       request->step_growth >= 0 && request->step_growth <= 1 &&
 	       gz_display_valid(request->display) && gz_foveation_valid(request->foveation);
 }
@@ -26,10 +27,11 @@ static bool same_place(float a, float b)
 static bool same_request(const struct gz_plan_request *a, const struct gz_plan_request *b)
 {
 	return a->width == b->width && a->height == b->height && a->rays_per_px == b->rays_per_px &&
-	       a->scale == b->scale && a->widen == b->widen && a->steps_per_px == b->steps_per_px &&
-	       a->step_growth == b->step_growth && a->refines == b->refines &&
+	       a->scale == b->scale && a->finer == b->finer && a->widen == b->widen &&
+	       a->steps_per_px == b->steps_per_px && a->step_growth == b->step_growth &&
+	       a->refines == b->refines &&
 	       ((same_place(a->gaze.x, b->gaze.x) && same_place(a->gaze.y, b->gaze.y)) ||
-		!gz_foveation_follows_gaze(b->foveation)) &&
+		!gz_foveation_follows_gaze(b->foveation) || b->finer >= GZ_PLAN_FINER_MAX) &&
 	       gz_display_same(a->display, b->display) &&
 	       gz_foveation_same(a->foveation, b->foveation);
 }
@@ -52,6 +54,30 @@ static bool is_made_for(const struct gz_plan *plan, const struct gz_plan_request
 static bool is_refined(const struct gz_plan *plan)
 {
 	return plan->tile_count != plan->first_round.tile_count;
+}
+
+/* Whether every pixel has a ray whose step is at most so many times the scene's. */
+static bool all_cast_by(const struct gz_plan *plan, float step_max)
+{
+	for (size_t i = 0; i < plan->tile_count; i++) {
+		const struct gz_tile *tile = &plan->tiles[i];
+		const bool whole = plan->layers[tile->layer].spacing == 1 &&
+				   tile->pattern == GZ_TILE_SQUARE &&
+				   plan->steps[tile->step] <= step_max;
+		if (!tile->replaced && !whole)
+			return false;
+	}
+	return true;
+}
+
+bool gz_plan_is_whole(const struct gz_plan *plan)
+{
+	return all_cast_by(plan, INFINITY);
+}
+
+bool gz_plan_is_exact(const struct gz_plan *plan)
+{
+	return all_cast_by(plan, 1);
 }
 
 bool gz_plan_same(const struct gz_plan *a, const struct gz_plan *b)
@@ -160,6 +186,7 @@ struct gz_plan_request gz_plan_request_make(const struct gz_foveation *foveation
 		.height = height,
 		.rays_per_px = 1,
 		.scale = 1,
+		.finer = 1,
 		.steps_per_px = 1,
 		.step_growth = GZ_PLAN_STEP_GROWTH,
 	};

@@ -120,6 +120,9 @@ struct gz_plan_layer {
 #define GZ_PLAN_SCALE_MAX     64
 #define GZ_PLAN_SCALE_OUTSIDE 8 /**< chosen: spacings of 2 px at the fovea's rim become 16 */
 
+/** More than any spacing in pixels. */
+#define GZ_PLAN_FINER_MAX 1e6
+
 /** The limit on growth of steps where a technique does not know what longer steps change. Chosen:
  *  docs/results.md, "Steps by what they change". */
 #define GZ_PLAN_STEP_GROWTH 0.4
@@ -141,6 +144,12 @@ struct gz_plan_request {
 	 * Methods with gz_method.can_be_coarser false ignore it.
 	 */
 	double scale;
+	/**
+	 * How much finer a pyramid is than its method asks, 1 to GZ_PLAN_FINER_MAX: spacings are
+	 * divided by it, and steps are those of the spacings. Other plans ignore it. With
+	 * GZ_PLAN_FINER_MAX every pixel has a ray.
+	 */
+	double finer;
 	/** How lost the gaze is, [0, 1]: 0 trusts it; 1 gives a uniform plan of at most the same
 	 *  cost. Methods that do not follow the gaze ignore it. */
 	double widen;
@@ -198,6 +207,12 @@ struct gz_plan {
 		bool valid;
 	} made_for; /**< what the tiles were made for */
 };
+
+/** Whether every pixel has a ray of its own. */
+bool gz_plan_is_whole(const struct gz_plan *plan);
+
+/** Whether each of them also has the scene's own step: the picture is that of `standard`. */
+bool gz_plan_is_exact(const struct gz_plan *plan);
 
 /** Whether the acuity rule's steps, which step_growth limits, are those of the plan. */
 bool gz_plan_steps_by_acuity(const struct gz_foveation *foveation);

@@ -49,7 +49,7 @@ struct gz_plan_context {
 	double scale_all, scale_outside; /**< factors of spacings: everywhere, outside the fovea */
 	double steps_per_px;             /**< of the request */
 	double step_growth;              /**< power of the acuity rule's multipliers of steps */
-	double widen;                    /**< of the request */
+	double finer, widen;             /**< of the request */
 	enum gz_plan_round round;
 	struct gz_plan_contrast contrast; /**< GZ_ROUND_FURTHER: of the block that is looked at */
 	double uniform_px; /**< spacing of the uniform plan that widen leads to, once known */

@@ -126,6 +126,7 @@ static void set_geometry(const struct gz_plan_request *request, struct gz_plan_c
 		.rays_per_mm = 1 / fmax(display->mm[0] / width, display->mm[1] / height),
 		.scale_all = fmax(request->scale / GZ_PLAN_SCALE_OUTSIDE, 1),
 		.scale_outside = fmin(request->scale, GZ_PLAN_SCALE_OUTSIDE),
+		.finer = request->finer,
 		.widen = request->widen,
 		.steps_per_px = request->steps_per_px,
 		.step_growth = step_growth_of(request),
@@ -248,6 +249,7 @@ double gz_plan_spacing_at(const struct gz_plan_context *context, double x, doubl
 	}
 	if (context->scale_all * context->scale_outside > 1)
 		spacing *= budget_scale_at(context, eccentricity);
+	spacing /= context->finer;
 	return context->widen > 0 ? widened(context, spacing) : spacing;
 }
 
@@ -255,7 +257,8 @@ static double table_step_at(const struct gz_plan_context *context, double x, dou
 {
 	double length_mm;
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
-	return curve_at(&context->step, eccentricity) * budget_scale_at(context, eccentricity);
+	const double step = curve_at(&context->step, eccentricity);
+	return fmax(step * budget_scale_at(context, eccentricity) / context->finer, 1);
 }
 
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,
@@ -394,7 +397,7 @@ static int place_step(const struct gz_plan_context *context, double x, double y)
 		return 0;
 	const double spacing =
 		curve_at(&context->spacing, eccentricity) * length_mm * context->rays_per_mm;
-	return gz_ladder_rung(spacing * budget_scale_at(context, eccentricity));
+	return gz_ladder_rung(spacing * budget_scale_at(context, eccentricity) / context->finer);
 }
 
 int gz_plan_step_for(const struct gz_plan_context *context, const struct gz_plan *plan, int x,

@@ -87,6 +87,76 @@ static void greater_scale_never_costs_more_rays(void **state)
 	}
 }
 
+/* Until every pixel has a ray of the scene's own step; regions stay as their methods have them. */
+static void finer_request_never_costs_fewer_rays(void **state)
+{
+	(void)state;
+	static const int methods[] = { GZ_METHOD_ACUITY, GZ_METHOD_CONTRAST, GZ_METHOD_TABLE };
+	for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++)
+		for (int lost = 0; lost < 2; lost++) {
+			struct fixture f;
+			begin(&f, methods[m], WIDTH, HEIGHT);
+			f.request.scale = 1.5;
+			f.request.widen = 0.5 * lost;
+			uint64_t before = rays(&f);
+			assert_false(gz_plan_is_whole(&f.plan));
+			for (f.request.finer = 1; f.request.finer < 64; f.request.finer *= 1.1) {
+				const uint64_t now = rays(&f);
+				if (now < before)
+					fail_msg("%s, finer by %g: %llu rays, %llu before",
+						 gz_method_names[methods[m]], f.request.finer,
+						 (unsigned long long)now,
+						 (unsigned long long)before);
+				before = now;
+			}
+			f.request.finer = GZ_PLAN_FINER_MAX;
+			/* Some lie beyond the picture's edges. */
+			assert_true(rays(&f) >= (uint64_t)WIDTH * HEIGHT && rays(&f) >= before);
+			assert_true(gz_plan_is_whole(&f.plan));
+			assert_true(gz_plan_is_exact(&f.plan));
+			gz_plan_free(&f.plan);
+		}
+	struct fixture regions;
+	begin(&regions, GZ_METHOD_DDC, WIDTH, HEIGHT);
+	const uint64_t before = rays(&regions);
+	regions.request.finer = GZ_PLAN_FINER_MAX;
+	assert_true(rays(&regions) == before);
+	gz_plan_free(&regions.plan);
+}
+
+/* Twice as fine: the widest spacing is half as wide. */
+static void finer_request_divides_spacings(void **state)
+{
+	(void)state;
+	struct fixture f;
+	begin(&f, GZ_METHOD_ACUITY, WIDTH, HEIGHT);
+	rays(&f);
+	double spacing, step, finer_spacing, finer_step;
+	most_within(&f, 180, &spacing, &step);
+	f.request.finer = 2;
+	rays(&f);
+	most_within(&f, 180, &finer_spacing, &finer_step);
+	assert_true(finer_spacing == spacing / 2);
+	assert_true(finer_step < step);
+	assert_false(gz_plan_is_whole(&f.plan));
+	gz_plan_free(&f.plan);
+}
+
+/* Longer steps by another rule: every pixel has a ray, but the picture is not that of standard. */
+static void whole_plan_with_longer_steps_is_not_exact(void **state)
+{
+	(void)state;
+	struct fixture f;
+	begin(&f, GZ_METHOD_STANDARD, WIDTH, HEIGHT);
+	rays(&f);
+	assert_true(gz_plan_is_exact(&f.plan));
+	f.foveation.step_rule = GZ_STEP_DISTANCE;
+	rays(&f);
+	assert_true(gz_plan_is_whole(&f.plan));
+	assert_false(gz_plan_is_exact(&f.plan));
+	gz_plan_free(&f.plan);
+}
+
 static void fovea_gives_way_last(void **state)
 {
 	(void)state;
@@ -240,6 +310,12 @@ static void refused_request_leaves_no_valid_plan(void **state)
 		assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
 	}
 	f.request = gz_plan_request_make(&f.foveation, &f.display, centre, 64, 64);
+	static const double wrong_finer[] = { 0, 0.99, 2 * GZ_PLAN_FINER_MAX, NAN };
+	for (size_t i = 0; i < sizeof wrong_finer / sizeof wrong_finer[0]; i++) {
+		f.request.finer = wrong_finer[i];
+		assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
+	}
+	f.request.finer = 1;
 	f.foveation.method = GZ_METHOD_TABLE;
 	f.foveation.table.count = 0;
 	assert_int_equal(gz_plan_update(&f.request, &f.plan), GZ_ERR_INVAL);
@@ -389,6 +465,9 @@ TEST_SUITE(plan_request)
 		cmocka_unit_test(growth_of_steps_has_the_limit_of_the_content),
 		cmocka_unit_test(bound_on_steps_shortens_acuity_steps_and_moves_no_ray),
 		cmocka_unit_test(greater_scale_never_costs_more_rays),
+		cmocka_unit_test(finer_request_never_costs_fewer_rays),
+		cmocka_unit_test(finer_request_divides_spacings),
+		cmocka_unit_test(whole_plan_with_longer_steps_is_not_exact),
 		cmocka_unit_test(fovea_gives_way_last),
 		cmocka_unit_test(standard_ignores_scale_and_widening),
 		cmocka_unit_test(widened_plan_is_uniform_and_costs_no_more),
