@@ -19,6 +19,7 @@
 #include "render/raycast/shared/lighting.h"
 #include "render/raycast/shared/preintegration.h"
 #include "render/raycast/shared/ray_content.h"
+#include "render/reconstruct/cpu/kept_picture.h"
 #include "render/reconstruct/cpu/kept_tiles.h"
 #include "render/reconstruct/cpu/lattice.h"
 #include "render/reconstruct/cpu/reconstruct.h"
@@ -111,6 +112,7 @@ struct cpu_raycaster {
 	struct gz_contrasts contrasts; /* of the tiles of a round */
 	struct gz_ray_content content; /* of the last picture */
 	struct gz_kept_tiles kept;
+	struct gz_kept_picture kept_picture;
 	struct cast_count counts[GZ_WORKERS_MAX];
 	char description[64];
 };
@@ -162,6 +164,7 @@ static void cpu_destroy(struct gz_raycaster *raycaster)
 	gz_lattices_free(&cpu->lattices);
 	gz_contrasts_free(&cpu->contrasts);
 	gz_kept_tiles_free(&cpu->kept);
+	gz_kept_picture_free(&cpu->kept_picture);
 	free(cpu->step_tables);
 	free(cpu->table);
 	gz_preintegration_free(&cpu->preintegration);
@@ -640,12 +643,45 @@ static struct gz_kept_tiles *find_kept_tiles(struct cpu_raycaster *cpu, const st
 {
 	if (!shot->keeps_rays || cpu->volume->bricks || shot->hits || shot->shade_count > 0) {
 		gz_kept_tiles_free(&cpu->kept);
+		gz_kept_picture_free(&cpu->kept_picture);
 		return NULL;
 	}
 	const uint64_t content =
 		gz_ray_content_follow(&cpu->content, shot->plan, shot->settings, ray_frame,
 				      shot->depths, cpu->pictures.serial);
 	return gz_kept_tiles_begin(&cpu->kept, shot->plan, content, 1) ? &cpu->kept : NULL;
+}
+
+/* Cast the picture's rays, in one round or several, and fill the pixels between them. */
+static enum gz_result cast_picture(struct cpu_raycaster *cpu, const struct gz_shot *shot,
+				   struct cast_job *job, struct gz_image *image,
+				   double *out_reconstruct_ms)
+{
+	cast_tiles(cpu, job);
+	if (shot->refined && shot->plan->refines) {
+		const enum gz_result result = cast_further_rounds(cpu, shot->refined, job);
+		if (result != GZ_OK)
+			return result;
+	}
+	const int64_t start_ns = gz_clock_now_ns();
+	gz_reconstruct(shot->plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name),
+		       cpu->workers, gz_image_words(image));
+	*out_reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	if (job->kept)
+		gz_kept_picture_store(&cpu->kept_picture, shot->plan, job->kept->content,
+				      cpu->workers, image);
+	return GZ_OK;
+}
+
+/* Show the whole picture that was made before, if this one is the same. */
+static bool take_kept_picture(struct cpu_raycaster *cpu, const struct cast_job *job,
+			      struct gz_image *image)
+{
+	if (!job->kept || !gz_kept_picture_take(&cpu->kept_picture, job->plan, job->kept->content,
+						cpu->workers, image))
+		return false;
+	cpu->counts[0].kept_rays = job->plan->ray_count;
+	return true;
 }
 
 static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_shot *shot,
@@ -704,21 +740,18 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	fill_tile_offsets(&job);
 	job.kept = find_kept_tiles(cpu, shot, &ray_frame);
 	memset(cpu->counts, 0, sizeof cpu->counts);
-	cast_tiles(cpu, &job);
-	if (shot->refined && plan->refines)
-		result = cast_further_rounds(cpu, shot->refined, &job);
+	double reconstruct_ms = 0;
+	if (!take_kept_picture(cpu, &job, image))
+		result = cast_picture(cpu, shot, &job, image, &reconstruct_ms);
 	if (result != GZ_OK)
 		return result;
-	const int64_t cast_ns = gz_clock_now_ns();
-	gz_reconstruct(plan, &cpu->lattices, gz_row_filters_find(cpu->kernels->name), cpu->workers,
-		       gz_image_words(image));
 	if (out_stats) {
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
-			.cast_ms = gz_ns_to_ms(cast_ns - start_ns),
-			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+			.cast_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns) - reconstruct_ms,
+			.reconstruct_ms = reconstruct_ms,
 			.gpu_ms = NAN,
 			.bricks_coming = cpu->volume->bricks ? cpu->bricks_coming : 0,
 		};

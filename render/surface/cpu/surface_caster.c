@@ -15,6 +15,7 @@
 #include "render/raycast/cpu/cpu_raycaster.h"
 #include "render/raycast/shared/macrocells.h"
 #include "render/raycast/shared/ray_content.h"
+#include "render/reconstruct/cpu/kept_picture.h"
 #include "render/reconstruct/cpu/kept_tiles.h"
 #include "render/reconstruct/cpu/lattice.h"
 #include "render/reconstruct/cpu/reconstruct.h"
@@ -67,6 +68,7 @@ struct gz_surface_caster {
 	struct gz_contrasts contrasts; /* of the tiles of a round */
 	struct gz_ray_content content; /* of the last picture */
 	struct gz_kept_tiles kept;
+	struct gz_kept_picture kept_picture;
 	char description[64];
 };
 
@@ -599,6 +601,7 @@ static struct gz_kept_tiles *find_kept_tiles(struct gz_surface_caster *caster,
 {
 	if (!shot->keeps_rays || shot->hits || shot->shade_count > 0) {
 		gz_kept_tiles_free(&caster->kept);
+		gz_kept_picture_free(&caster->kept_picture);
 		return NULL;
 	}
 	const uint64_t revision = caster->revision + caster->cube.serial; /* both only go up */
@@ -606,6 +609,41 @@ static struct gz_kept_tiles *find_kept_tiles(struct gz_surface_caster *caster,
 						       frame, NULL, revision);
 	return gz_kept_tiles_begin(&caster->kept, shot->plan, content, PLANE_COUNT) ? &caster->kept
 										    : NULL;
+}
+
+/* Cast the picture's rays, in one round or several, and fill the pixels between them. */
+static enum gz_result cast_surface_picture(struct gz_surface_caster *caster,
+					   const struct gz_surface_shot *shot,
+					   struct surface_job *job, struct gz_image *image,
+					   double *out_reconstruct_ms)
+{
+	cast_surface_tiles(caster, job);
+	/* Contrasts are those of colours, and hits are told for the first round's tiles. */
+	if (shot->refined && shot->plan->refines && image && !shot->hits) {
+		const enum gz_result result = cast_further_rounds(caster, shot->refined, job);
+		if (result != GZ_OK)
+			return result;
+	}
+	const int64_t start_ns = gz_clock_now_ns();
+	reconstruct_planes(caster, job);
+	*out_reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns);
+	if (job->kept && image)
+		gz_kept_picture_store(&caster->kept_picture, shot->plan, job->kept->content,
+				      caster->workers, image);
+	return GZ_OK;
+}
+
+/* Show the whole picture that was made before, if this one is the same and nothing but its colours
+ * is wanted. */
+static bool take_kept_picture(struct gz_surface_caster *caster, struct surface_job *job,
+			      struct gz_image *image, const struct gz_surface_planes *planes)
+{
+	if (!job->kept || !image || planes ||
+	    !gz_kept_picture_take(&caster->kept_picture, job->plan, job->kept->content,
+				  caster->workers, image))
+		return false;
+	atomic_store(&job->kept_rays, job->plan->ray_count);
+	return true;
 }
 
 enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
@@ -641,22 +679,19 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	fill_surface_cast(caster, shot, &frame, &job.cast);
 	job.coherent_spacing = coherent_spacing(caster, &job.cast.frame);
 	job.kept = find_kept_tiles(caster, shot, &frame);
-	cast_surface_tiles(caster, &job);
-	/* Contrasts are those of colours, and hits are told for the first round's tiles. */
-	if (shot->refined && plan->refines && image && !shot->hits)
-		result = cast_further_rounds(caster, shot->refined, &job);
+	double reconstruct_ms = 0;
+	if (!take_kept_picture(caster, &job, image, planes))
+		result = cast_surface_picture(caster, shot, &job, image, &reconstruct_ms);
 	if (result != GZ_OK)
 		return result;
-	const int64_t cast_ns = gz_clock_now_ns();
-	reconstruct_planes(caster, &job);
 	if (out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
 			.kept_rays = atomic_load(&job.kept_rays),
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
-			.cast_ms = gz_ns_to_ms(cast_ns - prepared_ns),
-			.reconstruct_ms = gz_ns_to_ms(gz_clock_now_ns() - cast_ns),
+			.cast_ms = gz_ns_to_ms(gz_clock_now_ns() - prepared_ns) - reconstruct_ms,
+			.reconstruct_ms = reconstruct_ms,
 			.gpu_ms = NAN,
 		};
 	return GZ_OK;
@@ -720,6 +755,7 @@ void gz_surface_caster_destroy(struct gz_surface_caster **caster)
 		gz_lattices_free(&self->lattices[i]);
 	gz_contrasts_free(&self->contrasts);
 	gz_kept_tiles_free(&self->kept);
+	gz_kept_picture_free(&self->kept_picture);
 	free(self);
 	*caster = NULL;
 }
