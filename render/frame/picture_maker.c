@@ -7,6 +7,8 @@
 
 #include "base/clock.h"
 #include "render/frame/drawers.h"
+#include "render/frame/still.h"
+#include "render/plan/method.h"
 
 #define GZ_LOG_MODULE "picture"
 
@@ -17,10 +19,11 @@ struct gz_picture_maker {
 	struct gz_plan plan;
 	struct gz_temporal temporal;
 	struct gz_temporal_content content; /* of the current picture */
+	struct gz_still still;
 	struct {
 		void *settings; /* a copy; NULL before the first */
 		struct gz_foveation foveation;
-	} kept_by;            /* what the accumulated pictures were made with */
+	} kept_by;            /* what earlier pictures were made with, of those that count */
 	struct gz_image cast; /* at the rays' resolution, if that is not the picture's */
 	struct gz_image image;
 };
@@ -31,7 +34,7 @@ struct making {
 	const struct gz_picture_request *request;
 	struct gz_plan *plan;
 	struct gz_image *image;
-	bool accumulates, keeps_rays, on_device;
+	bool accumulates, keeps_rays, grows, on_device;
 	double bound_ms; /* that limiting the plan took for what later plans reuse */
 	struct gz_picture_cost cost;
 };
@@ -168,7 +171,7 @@ static bool tells_depths(const struct gz_picture_maker *maker)
 	return maker->drawers.items[maker->drawers.count - 1].technique->tells_depths;
 }
 
-/* Accumulated pictures are dropped when anything but the camera has changed. */
+/* What earlier pictures saw counts no more when anything but the camera has changed. */
 static enum gz_result note_content(struct making *making)
 {
 	struct gz_picture_maker *maker = making->maker;
@@ -201,6 +204,27 @@ static bool shows_bricks(const struct gz_picture_maker *maker)
 				return true;
 		}
 	return false;
+}
+
+/* While nothing but the gaze changes, plans become finer (still.h). */
+static enum gz_result grow_plan(struct making *making, struct gz_plan_request *plan)
+{
+	struct gz_picture_maker *maker = making->maker;
+	if (!making->grows) {
+		maker->still = (struct gz_still) { 0 };
+		return GZ_OK;
+	}
+	const enum gz_result result = note_content(making);
+	if (result != GZ_OK)
+		return result;
+	const struct gz_still_view view = {
+		.camera = *making->request->camera,
+		.width = plan->width,
+		.height = plan->height,
+		.serial = maker->content.serial,
+	};
+	plan->finer = gz_still_begin(&maker->still, &view, plan->foveation->still_growth);
+	return GZ_OK;
 }
 
 /* With accumulation, turn the request into one for a shifted plan. */
@@ -268,6 +292,8 @@ static enum gz_result make_plan(struct making *making)
 	struct gz_display display = *request->display;
 	struct gz_plan_request plan;
 	enum gz_result result = plan_request_of(making, &plan);
+	if (result == GZ_OK)
+		result = grow_plan(making, &plan);
 	if (result == GZ_OK)
 		result = begin_accumulation(making, &plan, &display);
 	if (request->fresh_plan)
@@ -342,6 +368,15 @@ static enum gz_result draw_picture(struct making *making)
 	return result;
 }
 
+/* Whether the method's plan grows while nothing but the gaze changes. Strips have a plan each. */
+static bool grows_at_rest(const struct making *making)
+{
+	const struct gz_picture_request *request = making->request;
+	const struct gz_method *method = gz_method_of(request->foveation);
+	return making->keeps_rays && request->foveation->still_growth > 0 &&
+	       request->strip.rows == 0 && method->is_pyramid;
+}
+
 /* The code that found something unsupported, or lost the device, has logged it already. */
 static void log_failure(const struct making *making, enum gz_result failure)
 {
@@ -366,6 +401,7 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 		.keeps_rays = request->temporal && request->temporal->keep_rays &&
 			      !request->temporal->accumulate,
 	};
+	making.grows = grows_at_rest(&making);
 	const int64_t start_ns = gz_clock_now_ns();
 	enum gz_result result = make_plan(&making);
 	const int64_t planned_ns = gz_clock_now_ns();
@@ -375,6 +411,9 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 		log_failure(&making, result);
 		return result;
 	}
+	if (making.grows)
+		gz_still_end(&maker->still, making.plan, making.cost.stats.kept_rays > 0,
+			     request->foveation->still_growth);
 	making.cost.plan_ms = gz_ns_to_ms(planned_ns - start_ns) - making.bound_ms;
 	making.cost.stats.prepare_ms += making.bound_ms;
 	making.cost.stats.prepare_within_ms += making.bound_ms;
@@ -475,12 +514,13 @@ const char *gz_picture_maker_describe(const struct gz_picture_maker *maker)
 
 bool gz_picture_maker_settling(const struct gz_picture_maker *maker)
 {
-	return gz_temporal_settling(&maker->temporal);
+	return gz_temporal_settling(&maker->temporal) || gz_still_settling(&maker->still);
 }
 
 void gz_picture_maker_forget(struct gz_picture_maker *maker)
 {
 	gz_temporal_forget(&maker->temporal);
+	maker->still = (struct gz_still) { 0 };
 }
 
 void gz_picture_maker_destroy(struct gz_picture_maker **maker)

@@ -187,7 +187,8 @@ const char *gz_picture_maker_backend(const struct gz_picture_maker *maker);
  * other objects are shown. */
 const char *gz_picture_maker_describe(const struct gz_picture_maker *maker);
 
-/** Whether further pictures of the same request would still change, because they accumulate. */
+/** Whether further pictures of the same request would still change, because they accumulate or
+ *  their plan grows. */
 bool gz_picture_maker_settling(const struct gz_picture_maker *maker);
 
 /** Forget what earlier pictures saw. */

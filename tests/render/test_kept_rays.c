@@ -3,6 +3,7 @@
 #include "suite.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "render/frame/picture_maker.h"
@@ -206,9 +207,12 @@ static void turning_camera_keeps_nothing(void **state)
 	take_down(&stage);
 }
 
-/* Another value of an option: the next choice, or a number nearby. Returns whether there is one. */
+/* Another value of an option: the next choice, or a number nearby. Returns whether there is one.
+ * Not that with which pictures that keep rays have more of them. */
 static bool change_option(const struct gz_option *option, void *target)
 {
+	if (strcmp(option->key, "foveation.still_growth") == 0)
+		return false;
 	char *field = (char *)target + option->offset;
 	double *number = (double *)(void *)field;
 	int *whole = (int *)(void *)field;
@@ -403,6 +407,168 @@ static void keeping_can_be_switched_off(void **state)
 	take_down(&stage);
 }
 
+/* ---- plans that grow while only the gaze changes ---- */
+
+static void make_growing(struct stage *stage)
+{
+	struct gz_picture_request request = stage->request;
+	struct gz_image *image = NULL;
+	request.temporal = &stage->temporal;
+	request.plan = &stage->plans[KEPT];
+	request.image = &stage->images[KEPT];
+	assert_int_equal(gz_picture_make(stage->makers[KEPT], &request, &image, &stage->cost),
+			 GZ_OK);
+}
+
+/* The picture with a ray for every pixel, by the other maker. */
+static void make_standard(struct stage *stage)
+{
+	const struct gz_foveation full = gz_foveation_full();
+	struct gz_picture_request request = stage->request;
+	struct gz_image *image = NULL;
+	request.foveation = &full;
+	request.plan = &stage->plans[BARE];
+	request.image = &stage->images[BARE];
+	assert_int_equal(gz_picture_make(stage->makers[BARE], &request, &image, NULL), GZ_OK);
+}
+
+/* Sum of the differences from standard. */
+static double error_of(const struct stage *stage)
+{
+	const struct gz_image *image = &stage->images[KEPT], *standard = &stage->images[BARE];
+	double sum = 0;
+	for (size_t i = 0; i < (size_t)image->width * (size_t)image->height * 4; i++)
+		sum += abs(image->pixels[i] - standard->pixels[i]);
+	return sum;
+}
+
+static const double growth = 0.5;
+
+static void set_up_growing(const struct gz_technique *technique, int method, struct stage *stage)
+{
+	set_up(technique, stage);
+	stage->scene.foveation.method = method;
+	stage->scene.foveation.still_growth = growth;
+	make_standard(stage);
+}
+
+/* Make pictures until one is whole; return how many. */
+static int grow_until_whole(struct stage *stage, const char *what)
+{
+	enum { PICTURES_MOST = 60 };
+	const double tile = 2 * GZ_TILE_EDGE * GZ_TILE_EDGE;
+	double method_rays = 0, first_error = 0;
+	int pictures = 0;
+	do {
+		stage->request.focus = gz_focus_at(places[pictures % 4]);
+		make_growing(stage);
+		const struct gz_frame_stats *stats = &stage->cost.stats;
+		const double cast = (double)(stats->rays - stats->kept_rays);
+		if (pictures == 0)
+			method_rays = (double)stats->rays, first_error = error_of(stage);
+		/* Rays that lie between others are cast with those, so as many again. */
+		if (cast > method_rays * (pictures < 2 ? 1.1 : 6 * growth) + tile)
+			fail_msg("%s: picture %d casts %g rays, the method %g", what, pictures,
+				 cast, method_rays);
+		if (error_of(stage) > 1.05 * first_error)
+			fail_msg("%s: picture %d is worse than the first", what, pictures);
+		if (++pictures > PICTURES_MOST)
+			fail_msg("%s: not whole after %d pictures", what, pictures);
+	} while (gz_picture_maker_settling(stage->makers[KEPT]));
+	return pictures;
+}
+
+static void growing_plan_ends_as_standard(void **state)
+{
+	(void)state;
+	static const int methods[] = { GZ_METHOD_ACUITY, GZ_METHOD_CONTRAST };
+	for (int t = 0; t < TECHNIQUES; t++)
+		for (int m = 0; m < 2; m++) {
+			struct stage stage;
+			if (!is_present(kept_by[t]))
+				continue;
+			set_up_growing(kept_by[t], methods[m], &stage);
+			assert_true(grow_until_whole(&stage, gz_method_names[methods[m]]) > 4);
+			assert_true(error_of(&stage) == 0);
+			/* The whole picture is kept, wherever the gaze goes. */
+			for (int i = 0; i < PLACES; i++) {
+				stage.request.focus = gz_focus_at(places[i]);
+				memset(stage.images[KEPT].pixels, 0, 64);
+				make_growing(&stage);
+				assert_true(stage.cost.stats.samples == 0);
+				assert_true(stage.cost.stats.rays >= WIDTH * HEIGHT);
+				assert_true(stage.cost.stats.kept_rays == stage.cost.stats.rays);
+				assert_true(error_of(&stage) == 0);
+			}
+			take_down(&stage);
+		}
+}
+
+/* Whatever else changes, the next picture is the method's own again. */
+static void grown_plan_falls_back_at_once(void **state)
+{
+	(void)state;
+	for (int change = 0; change < 5; change++) {
+		struct stage stage;
+		set_up_growing(&gz_raycast_technique, GZ_METHOD_ACUITY, &stage);
+		make_growing(&stage);
+		const uint64_t method_rays = stage.cost.stats.rays;
+		for (int i = 0; i < 6 || (change % 2 && i < 60); i++)
+			make_growing(&stage);
+		assert_true(stage.cost.stats.rays > 2 * method_rays);
+		if (change == 0) {
+			gz_camera_turn(&stage.scene.camera, 1);
+		} else if (change == 1) {
+			stage.scene.rays.ray_sampling_rate *= 1.5;
+		} else if (change == 2) {
+			stage.scene.transfer.points[0].rgb[0] = 1;
+			stage.object.transfer_revision++;
+			show(&stage);
+		} else if (change == 3) {
+			stage.temporal.keep_rays = false;
+		} else {
+			gz_picture_maker_forget(stage.makers[KEPT]);
+		}
+		make_growing(&stage);
+		assert_true(stage.cost.stats.rays == method_rays);
+		if (change < 4) /* what was forgotten, the backend still keeps, and grows on */
+			make_both(&stage, "after a change");
+		take_down(&stage);
+	}
+}
+
+/* What keeps no rays does not grow: regions, strips, frames that accumulate, and pictures whose
+ * camera moves. */
+static void other_plans_do_not_grow(void **state)
+{
+	(void)state;
+	for (int kind = 0; kind < 5; kind++) {
+		struct stage stage;
+		set_up_growing(&gz_raycast_technique, GZ_METHOD_ACUITY, &stage);
+		if (kind == 0)
+			stage.scene.foveation.method = GZ_METHOD_DDC;
+		else if (kind == 1)
+			stage.request.strip.rows = HEIGHT / 2;
+		else if (kind == 2)
+			stage.temporal.accumulate = true;
+		else if (kind == 3)
+			stage.scene.foveation.still_growth = 0;
+		make_growing(&stage);
+		const uint64_t first = stage.cost.stats.rays;
+		for (int i = 0; i < 8; i++) {
+			if (kind == 4)
+				gz_camera_turn(&stage.scene.camera, 1);
+			make_growing(&stage);
+			/* Lattices of frames that accumulate are shifted. */
+			if ((double)stage.cost.stats.rays > 1.1 * (double)first)
+				fail_msg("kind %d, picture %d: %llu rays instead of %llu", kind, i,
+					 (unsigned long long)stage.cost.stats.rays,
+					 (unsigned long long)first);
+		}
+		take_down(&stage);
+	}
+}
+
 TEST_SUITE(kept_rays)
 {
 	const struct CMUnitTest tests[] = {
@@ -415,6 +581,9 @@ TEST_SUITE(kept_rays)
 		cmocka_unit_test(revision_makes_another_content),
 		cmocka_unit_test(plans_that_change_their_layers_keep_nothing),
 		cmocka_unit_test(keeping_can_be_switched_off),
+		cmocka_unit_test(growing_plan_ends_as_standard),
+		cmocka_unit_test(grown_plan_falls_back_at_once),
+		cmocka_unit_test(other_plans_do_not_grow),
 	};
 	return cmocka_run_group_tests_name("kept_rays", tests, NULL, NULL);
 }

@@ -80,6 +80,18 @@ class Headless(unittest.TestCase):
         for i in range(3):
             self.assertEqual(read_png(self.path("yes-%d.png" % i)), read_png(self.path("no-%d.png" % i)))
 
+    def test_picture_at_rest_gets_a_ray_for_every_pixel(self):
+        wide = ("--foveation.acuity_slope", 1, "--foveation.acuity_far_share", 1, "--method", "acuity")
+        self.good(*wide, "--frames", 24, "--foveation.still_growth", 1, "--stats", self.path("grown"), "--out",
+                  self.path("grown-%02d.png"))
+        self.good("--method", "standard", "--out", self.path("standard.png"))
+        frames, last = self.frames("grown"), read_png(self.path("grown-23.png"))
+        self.assertFalse(read_png(self.path("grown-00.png")) == last)
+        self.assertEqual(last, read_png(self.path("standard.png")))
+        rays = [frame["rays"] for frame in frames]
+        self.assertEqual(rays, sorted(rays))
+        self.assertEqual(frames[-1]["kept_rays"], rays[-1])
+
     def test_each_method_writes_pictures_lines_and_statistics(self):
         pictures = {}
         for method in METHODS:

@@ -35,6 +35,7 @@ static void foveation_keys_apply_to_the_methods_that_use_them(void **state)
 		{ "foveation.acuity_far_share", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.acuity_step_growth", { 0, 0, 0, 1, 0, 0, 0, 1 } },
 		{ "foveation.acuity_step_error", { 0, 0, 0, 1, 0, 0, 0, 1 } },
+		{ "foveation.still_growth", { 0, 0, 0, 1, 0, 0, 1, 1 } },
 		{ "foveation.edge_contrast", { 0, 0, 0, 1, 0, 0, 0, 0 } },
 		{ "foveation.contrast_finest", { 0, 0, 0, 0, 0, 0, 0, 1 } },
 		{ "foveation.contrast_threshold", { 0, 0, 0, 0, 0, 0, 0, 1 } },

@@ -258,6 +258,13 @@ static bool without_the_past(const struct gz_scene_settings *settings)
 	return !settings->temporal.accumulate;
 }
 
+/* Plans of pyramids grow while rays of earlier frames are kept. */
+static bool with_kept_rays(const struct gz_scene_settings *settings)
+{
+	return with_a_pyramid(settings) && settings->temporal.keep_rays &&
+	       without_the_past(settings);
+}
+
 static bool with_a_split(const struct gz_scene_settings *settings)
 {
 	return settings->view.compare == GZ_COMPARE_SPLIT;
@@ -319,6 +326,7 @@ static const struct {
 	{ "render.early_termination", by_samples },
 	{ "foveation.step_phase", with_longer_steps },
 	{ "foveation.reconstruction", with_a_pyramid },
+	{ "foveation.still_growth", with_kept_rays },
 	{ "foveation.acuity_", by_acuity },
 	{ "foveation.contrast_", by_contrast },
 	{ "foveation.edge_", by_edges },
