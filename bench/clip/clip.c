@@ -30,6 +30,7 @@ enum { SEQUENCE_NAME_SIZE = 120, METHOD_BYTES = 92 };
 struct sequence {
 	char folder[SEQUENCE_NAME_SIZE]; /* in the clip's */
 	struct gz_variant_settings settings;
+	struct gz_picture_maker *own_maker; /* NULL: pictures do not depend on earlier ones */
 	struct gz_plan plan;
 	double *frame_ms;
 };
@@ -162,7 +163,10 @@ static enum gz_result start_sequence(struct clip *clip, size_t number)
 	snprintf(path, sizeof path, "%s/%s", clip->folder, sequence->folder);
 	if (mkdir(path, 0777) != 0)
 		return refuse_folder(clip, path, strerror(errno));
-	return GZ_OK;
+	/* Its plans grow while only the gaze changes, so no other picture may come between. */
+	return sequence->settings.foveation.still_growth > 0
+		       ? gz_stage_open_maker(&clip->stage, 0, &sequence->own_maker)
+		       : GZ_OK;
 }
 
 static enum gz_result start_sequences(struct clip *clip)
@@ -186,6 +190,7 @@ static struct gz_point clip_gaze(const struct clip *clip, int frame)
 
 static enum gz_result write_frame(struct clip *clip, struct sequence *sequence, int frame)
 {
+	const struct gz_temporal_params keeps = { .keep_rays = true };
 	const struct gz_picture_request request = {
 		.camera = &clip->camera,
 		.settings = &sequence->settings.rays,
@@ -194,6 +199,7 @@ static enum gz_result write_frame(struct clip *clip, struct sequence *sequence, 
 		.focus = gz_focus_at(clip_gaze(clip, frame)),
 		.width = clip->study.sizes[0][0],
 		.height = clip->study.sizes[0][1],
+		.temporal = sequence->own_maker ? &keeps : NULL,
 		.fresh_plan = gz_foveation_follows_gaze(&sequence->settings.foveation),
 		.plan = &sequence->plan,
 		.image = &clip->image,
@@ -203,8 +209,9 @@ static enum gz_result write_frame(struct clip *clip, struct sequence *sequence, 
 	char path[GZ_PATH_SIZE + SEQUENCE_NAME_SIZE + 32];
 	if (gz_command_interrupted())
 		return GZ_ERR_CANCELLED;
-	const enum gz_result result =
-		gz_picture_make(clip->stage.backends[0], &request, &image, &cost);
+	struct gz_picture_maker *maker =
+		sequence->own_maker ? sequence->own_maker : clip->stage.backends[0];
+	const enum gz_result result = gz_picture_make(maker, &request, &image, &cost);
 	if (result != GZ_OK)
 		return result;
 	sequence->frame_ms[frame] = cost.total_ms;
@@ -306,6 +313,7 @@ static enum gz_result write_description(struct clip *clip)
 static void free_clip(struct clip *clip)
 {
 	for (size_t i = 0; clip->sequences && i < clip->study.variant_count; i++) {
+		gz_picture_maker_destroy(&clip->sequences[i].own_maker);
 		gz_plan_free(&clip->sequences[i].plan);
 		free(clip->sequences[i].frame_ms);
 	}

@@ -250,6 +250,16 @@ static enum gz_result show_scene(struct gz_stage *stage, const struct gz_study_b
 	return result;
 }
 
+enum gz_result gz_stage_open_maker(struct gz_stage *stage, size_t backend,
+				   struct gz_picture_maker **out_maker)
+{
+	*out_maker = NULL;
+	const enum gz_result result = show_scene(stage, &stage->backend_params[backend], out_maker);
+	if (result != GZ_OK)
+		gz_picture_maker_destroy(out_maker);
+	return result;
+}
+
 static enum gz_result show_on_backends(struct gz_stage *stage, const struct gz_study *study,
 				       char (*out_descriptions)[GZ_STUDY_TEXT_SIZE])
 {

@@ -73,6 +73,17 @@ enum gz_result gz_stage_transfer(const struct gz_stage *stage, size_t which,
 enum gz_result gz_stage_enter(struct gz_stage *stage, const struct gz_study *study, size_t scene,
 			      char (*out_descriptions)[GZ_STUDY_TEXT_SIZE]);
 
+/**
+ * Open another picture maker that shows what one of the stage's does, for pictures that follow from
+ * the ones before.
+ *
+ * @param backend  place in the study's list
+ * @param[out] out_maker  owned by the caller, who destroys it before the stage
+ * @return what gz_picture_maker_create() and gz_picture_maker_show() return; logged
+ */
+enum gz_result gz_stage_open_maker(struct gz_stage *stage, size_t backend,
+				   struct gz_picture_maker **out_maker);
+
 /** Hash of a volume and a transfer function; equal hashes give equal pictures. */
 enum gz_result gz_stage_data_hash(const struct gz_stage *stage, const struct gz_transfer *transfer,
 				  char out_hex[GZ_STUDY_HASH_SIZE]);

@@ -213,6 +213,30 @@ static void gaze_and_camera_follow_their_paths(void **state)
 	json_decref(clip);
 }
 
+/* Only its own frames count: the other methods' come between. */
+static void plan_grows_until_frames_are_the_reference(void **state)
+{
+	const struct place *place = *state;
+	place_run(*state,
+		  (const char *[]) { "clip", "a.scene", "--out=c", "--size=48x32", "--turn=0",
+				     "--frames=20",
+				     "--methods=acuity:acuity_slope=1:acuity_far_share=1,"
+				     "acuity:acuity_slope=1:acuity_far_share=1:still_growth=2",
+				     NULL });
+	assert_said(place, 0, "20 frames of a reference and 2 more");
+	static const char plain[] = "c/1-acuity-acuity_slope-1-acuity_far_share-1/frame-%04d.png";
+	static const char grown[] =
+		"c/2-acuity-acuity_slope-1-acuity_far_share-1-still_growth-2/frame-%04d.png";
+	for (int frame = 0; frame < 20; frame += 19) {
+		char alone[100], growing[100], reference[100];
+		snprintf(alone, sizeof alone, plain, frame);
+		snprintf(growing, sizeof growing, grown, frame);
+		snprintf(reference, sizeof reference, "c/reference/frame-%04d.png", frame);
+		assert_false(same_pictures(place, alone, reference));
+		assert_true(same_pictures(place, growing, frame == 0 ? alone : reference));
+	}
+}
+
 static void wrong_requests_write_nothing(void **state)
 {
 	const struct place *place = *state;
@@ -244,6 +268,8 @@ TEST_SUITE(clip)
 		cmocka_unit_test_setup_teardown(every_sequence_shows_the_same_cameras, set_up,
 						place_remove),
 		cmocka_unit_test_setup_teardown(gaze_and_camera_follow_their_paths, set_up,
+						place_remove),
+		cmocka_unit_test_setup_teardown(plan_grows_until_frames_are_the_reference, set_up,
 						place_remove),
 		cmocka_unit_test_setup_teardown(wrong_requests_write_nothing, set_up, place_remove),
 	};
