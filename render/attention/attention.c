@@ -97,7 +97,8 @@ bool gz_focus_same(const struct gz_focus *a, const struct gz_focus *b)
 {
 	return same_number((double)a->point.x, (double)b->point.x) &&
 	       same_number((double)a->point.y, (double)b->point.y) &&
-	       same_number(a->scale, b->scale) && same_number(a->widen, b->widen);
+	       same_number(a->scale, b->scale) && same_number(a->widen, b->widen) &&
+	       same_number(a->finer, b->finer);
 }
 
 void gz_attention_init(struct gz_attention *attention, const struct gz_attention_params *params)

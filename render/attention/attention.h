@@ -86,6 +86,8 @@ struct gz_focus {
 		point; /**< where it is sharp, normalised; NaN before the first gaze: the centre */
 	double scale;  /**< factor on spacings outside the fovea, 1 or more */
 	double widen;  /**< 0: sharp at the point, to 1: uniform */
+	/** gz_plan_request.finer; 0: as earlier pictures let it grow (foveation.still_growth). */
+	double finer;
 };
 
 /** Whether both give the same plan. */

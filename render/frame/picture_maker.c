@@ -7,8 +7,7 @@
 
 #include "base/clock.h"
 #include "render/frame/drawers.h"
-#include "render/frame/still.h"
-#include "render/plan/method.h"
+#include "render/frame/growth.h"
 
 #define GZ_LOG_MODULE "picture"
 
@@ -19,11 +18,12 @@ struct gz_picture_maker {
 	struct gz_plan plan;
 	struct gz_temporal temporal;
 	struct gz_temporal_content content; /* of the current picture */
-	struct gz_still still;
+	struct gz_growth growth;
+	bool grows; /* the plan of the last picture did, or may with the next */
 	struct {
 		void *settings; /* a copy; NULL before the first */
 		struct gz_foveation foveation;
-	} kept_by;            /* what earlier pictures were made with, of those that count */
+	} kept_by;            /* what the last picture was made with that accumulated or grew */
 	struct gz_image cast; /* at the rays' resolution, if that is not the picture's */
 	struct gz_image image;
 };
@@ -171,7 +171,7 @@ static bool tells_depths(const struct gz_picture_maker *maker)
 	return maker->drawers.items[maker->drawers.count - 1].technique->tells_depths;
 }
 
-/* What earlier pictures saw counts no more when anything but the camera has changed. */
+/* Accumulated and grown pictures begin again when anything but the camera has changed. */
 static enum gz_result note_content(struct making *making)
 {
 	struct gz_picture_maker *maker = making->maker;
@@ -206,25 +206,53 @@ static bool shows_bricks(const struct gz_picture_maker *maker)
 	return false;
 }
 
-/* While nothing but the gaze changes, plans become finer (still.h). */
+/* Whether the plan may grow. Strips have a plan each, and a replay says how its plans have grown.
+ */
+static bool plan_grows(const struct making *making)
+{
+	const struct gz_picture_request *request = making->request;
+	return making->keeps_rays && request->focus.finer <= 0 &&
+	       request->foveation->still_growth > 0 && request->strip.rows == 0 &&
+	       gz_plan_can_grow(request->foveation);
+}
+
+/* While nothing but the gaze changes, plans become finer (growth.h). Those of a lost gaze do not:
+ * they change as a whole when they widen. */
 static enum gz_result grow_plan(struct making *making, struct gz_plan_request *plan)
 {
 	struct gz_picture_maker *maker = making->maker;
-	if (!making->grows) {
-		maker->still = (struct gz_still) { 0 };
+	if (!plan_grows(making)) {
+		maker->growth = (struct gz_growth) { 0 };
 		return GZ_OK;
 	}
 	const enum gz_result result = note_content(making);
 	if (result != GZ_OK)
 		return result;
-	const struct gz_still_view view = {
+	const struct gz_growth_view view = {
 		.camera = *making->request->camera,
+		.display = *making->request->display,
 		.width = plan->width,
 		.height = plan->height,
 		.serial = maker->content.serial,
 	};
-	plan->finer = gz_still_begin(&maker->still, &view, plan->foveation->still_growth);
+	const double finer = gz_growth_begin(&maker->growth, &view);
+	making->grows = plan->widen <= 0;
+	plan->finer = making->grows || maker->growth.whole ? finer : 1;
 	return GZ_OK;
+}
+
+static void end_growth(const struct making *making)
+{
+	struct gz_picture_maker *maker = making->maker;
+	const struct gz_growth_picture picture = {
+		.plan = making->plan,
+		.keeps = making->cost.stats.keeps_rays,
+		.refines = making->plan->refines,
+		.share = making->request->foveation->still_growth,
+	};
+	if (making->grows)
+		gz_growth_end(&maker->growth, &picture);
+	maker->grows = making->grows;
 }
 
 /* With accumulation, turn the request into one for a shifted plan. */
@@ -275,6 +303,7 @@ static enum gz_result plan_request_of(struct making *making, struct gz_plan_requ
 	plan.rays_per_px = rate;
 	plan.scale = request->focus.scale;
 	plan.widen = request->focus.widen;
+	plan.finer = fmax(request->focus.finer, 1);
 	struct gz_drawer *drawer = gz_drawers_last(&making->maker->drawers);
 	const struct gz_shot shot = shot_of(making);
 	if (drawer->ops->bound_plan)
@@ -308,6 +337,7 @@ static enum gz_result make_plan(struct making *making)
 			.height = rays_along(request->height, sampling_rate(request)),
 			.shift = { 0, -rays_along(request->strip.top, sampling_rate(request)) },
 		};
+	making->cost.finer = result == GZ_OK ? plan.finer : 1;
 	making->cost.kept = result == GZ_OK && making->accumulates && maker->temporal.any;
 	return result;
 }
@@ -368,15 +398,6 @@ static enum gz_result draw_picture(struct making *making)
 	return result;
 }
 
-/* Whether the method's plan grows while nothing but the gaze changes. Strips have a plan each. */
-static bool grows_at_rest(const struct making *making)
-{
-	const struct gz_picture_request *request = making->request;
-	const struct gz_method *method = gz_method_of(request->foveation);
-	return making->keeps_rays && request->foveation->still_growth > 0 &&
-	       request->strip.rows == 0 && method->is_pyramid;
-}
-
 /* The code that found something unsupported, or lost the device, has logged it already. */
 static void log_failure(const struct making *making, enum gz_result failure)
 {
@@ -401,7 +422,6 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 		.keeps_rays = request->temporal && request->temporal->keep_rays &&
 			      !request->temporal->accumulate,
 	};
-	making.grows = grows_at_rest(&making);
 	const int64_t start_ns = gz_clock_now_ns();
 	enum gz_result result = make_plan(&making);
 	const int64_t planned_ns = gz_clock_now_ns();
@@ -411,9 +431,7 @@ enum gz_result gz_picture_make(struct gz_picture_maker *maker,
 		log_failure(&making, result);
 		return result;
 	}
-	if (making.grows)
-		gz_still_end(&maker->still, making.plan, making.cost.stats.kept_rays > 0,
-			     request->foveation->still_growth);
+	end_growth(&making);
 	making.cost.plan_ms = gz_ns_to_ms(planned_ns - start_ns) - making.bound_ms;
 	making.cost.stats.prepare_ms += making.bound_ms;
 	making.cost.stats.prepare_within_ms += making.bound_ms;
@@ -514,13 +532,14 @@ const char *gz_picture_maker_describe(const struct gz_picture_maker *maker)
 
 bool gz_picture_maker_settling(const struct gz_picture_maker *maker)
 {
-	return gz_temporal_settling(&maker->temporal) || gz_still_settling(&maker->still);
+	return gz_temporal_settling(&maker->temporal) ||
+	       (maker->grows && gz_growth_settling(&maker->growth));
 }
 
 void gz_picture_maker_forget(struct gz_picture_maker *maker)
 {
 	gz_temporal_forget(&maker->temporal);
-	maker->still = (struct gz_still) { 0 };
+	maker->growth = (struct gz_growth) { 0 };
 }
 
 void gz_picture_maker_destroy(struct gz_picture_maker **maker)

@@ -123,7 +123,8 @@ struct gz_picture_cost {
 	struct gz_frame_stats stats; /**< reconstruct_ms includes resampling and accumulation */
 	double plan_ms;
 	double total_ms; /**< wall time of the call */
-	bool kept;       /**< earlier pictures contributed to it */
+	double finer;    /**< gz_plan_request.finer: above 1, the plan has grown */
+	bool kept;       /**< earlier pictures contributed to it: temporal.accumulate */
 };
 
 /**

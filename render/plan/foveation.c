@@ -55,9 +55,9 @@ const struct gz_option gz_foveation_options[] = {
 	  .help = "how much of a picture's light longer steps may change: they grow less if data "
 		  "and transfer function are sharp; 1 = they grow as acuity_step_growth says" },
 	{ "foveation.still_growth", GZ_OPTION_DOUBLE, AT(still_growth), 0, 4, .preset = "0",
-	  .help = "acuity, contrast, table: while nothing but the gaze changes, each picture has "
-		  "so many more rays, as a share of the method's, until every pixel has one; "
-		  "0 = no more" },
+	  .help = "acuity, contrast, table: rays that each further picture adds while nothing but "
+		  "the gaze changes, as a share of the method's own, until every pixel has one; "
+		  "0 = none" },
 	{ "foveation.edge_contrast", GZ_OPTION_DOUBLE, AT(edge_contrast), 0.01, 1, .preset = "1",
 	  .help = "acuity: rays that differ by this contrast or more from their neighbours are at "
 		  "an edge, which gets finer rays; 1 = no edge does" },

@@ -80,8 +80,8 @@ struct gz_foveation {
 	double acuity_far_share; /**< by this share of acuity_slope, [0, 1] */
 	double acuity_step_growth; /**< power of the acuity rule's step multipliers, [0, 1] */
 	double acuity_step_error;  /**< most that longer steps may change, (0, 1]; 1: anything */
-	double still_growth;  /**< pyramids: rays that each picture adds while nothing but the gaze
-				 changes, as a share of the method's, [0, 4] */
+	double still_growth;  /**< rays that each further picture adds while nothing but the gaze
+				 changes, as a share of the method's own, [0, 4] */
 	double edge_contrast; /**< acuity: least contrast of an edge, (0, 1]; 1: none is one */
 	double edge_finest;   /**< acuity: spacing at edges, times what the eye resolves */
 	double contrast_threshold; /**< least contrast that is seen at the gaze, [0, 1] */

@@ -24,6 +24,13 @@ static bool same_place(float a, float b)
 	return a == b || (isnan(a) && isnan(b));
 }
 
+static bool tiles_follow_gaze(const struct gz_plan_request *request)
+{
+	const bool all_pixels =
+		request->finer >= GZ_PLAN_FINER_MAX && gz_plan_can_grow(request->foveation);
+	return gz_foveation_follows_gaze(request->foveation) && !all_pixels;
+}
+
 static bool same_request(const struct gz_plan_request *a, const struct gz_plan_request *b)
 {
 	return a->width == b->width && a->height == b->height && a->rays_per_px == b->rays_per_px &&
@@ -31,7 +38,7 @@ static bool same_request(const struct gz_plan_request *a, const struct gz_plan_r
 	       a->steps_per_px == b->steps_per_px && a->step_growth == b->step_growth &&
 	       a->refines == b->refines &&
 	       ((same_place(a->gaze.x, b->gaze.x) && same_place(a->gaze.y, b->gaze.y)) ||
-		!gz_foveation_follows_gaze(b->foveation) || b->finer >= GZ_PLAN_FINER_MAX) &&
+		!tiles_follow_gaze(b)) &&
 	       gz_display_same(a->display, b->display) &&
 	       gz_foveation_same(a->foveation, b->foveation);
 }

@@ -146,8 +146,8 @@ struct gz_plan_request {
 	double scale;
 	/**
 	 * How much finer a pyramid is than its method asks, 1 to GZ_PLAN_FINER_MAX: spacings are
-	 * divided by it, and steps are those of the spacings. Other plans ignore it. With
-	 * GZ_PLAN_FINER_MAX every pixel has a ray.
+	 * divided by it, and steps by acuity are those of the spacings. Above 1 the plan has one
+	 * round. Other plans ignore it. With GZ_PLAN_FINER_MAX every pixel has a ray.
 	 */
 	double finer;
 	/** How lost the gaze is, [0, 1]: 0 trusts it; 1 gives a uniform plan of at most the same
@@ -210,6 +210,11 @@ struct gz_plan {
 
 /** Whether every pixel has a ray of its own. */
 bool gz_plan_is_whole(const struct gz_plan *plan);
+
+/** Whether gz_plan_request.finer only adds rays as it rises, up to the picture of `standard`: the
+ *  plan is a pyramid, steps are those of spacings or the scene's, and nothing asks for rays that
+ * are finer than the method's at edges. */
+bool gz_plan_can_grow(const struct gz_foveation *foveation);
 
 /** Whether each of them also has the scene's own step: the picture is that of `standard`. */
 bool gz_plan_is_exact(const struct gz_plan *plan);

@@ -88,6 +88,16 @@ bool gz_plan_steps_by_acuity(const struct gz_foveation *foveation)
 	return steps == GZ_STEPS_RUNG || steps == GZ_STEPS_PLACE;
 }
 
+bool gz_plan_can_grow(const struct gz_foveation *foveation)
+{
+	const struct gz_method *method = gz_method_of(foveation);
+	const enum gz_plan_steps steps = steps_of(foveation);
+	const bool finer_at_edges = (method->refines_edges && foveation->edge_contrast < 1) ||
+				    (method->refines && foveation->contrast_finest < 1);
+	return method->is_pyramid && steps != GZ_STEPS_DISTANCE && steps != GZ_STEPS_TABLE &&
+	       !finer_at_edges;
+}
+
 static double step_growth_of(const struct gz_plan_request *request)
 {
 	const struct gz_foveation *foveation = request->foveation;
@@ -130,7 +140,8 @@ static void set_geometry(const struct gz_plan_request *request, struct gz_plan_c
 		.widen = request->widen,
 		.steps_per_px = request->steps_per_px,
 		.step_growth = step_growth_of(request),
-		.round = request->refines && request->widen <= 0 && refines(request->foveation)
+		.round = request->refines && request->finer <= 1 && request->widen <= 0 &&
+					 refines(request->foveation)
 				 ? GZ_ROUND_FIRST
 				 : GZ_ROUND_ONLY,
 	};
@@ -257,8 +268,7 @@ static double table_step_at(const struct gz_plan_context *context, double x, dou
 {
 	double length_mm;
 	const double eccentricity = eccentricity_at(context, x, y, &length_mm);
-	const double step = curve_at(&context->step, eccentricity);
-	return fmax(step * budget_scale_at(context, eccentricity) / context->finer, 1);
+	return curve_at(&context->step, eccentricity) * budget_scale_at(context, eccentricity);
 }
 
 double gz_acuity_spacing_px(const struct gz_foveation *foveation, const struct gz_display *display,

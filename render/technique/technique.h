@@ -93,6 +93,7 @@ struct gz_backend_params {
 struct gz_frame_stats {
 	uint64_t rays;            /**< of the plan, including those that miss everything */
 	uint64_t kept_rays;       /**< of them, those that an earlier picture cast */
+	bool keeps_rays;          /**< its tiles are kept for the next picture */
 	uint64_t samples;         /**< interpolations of data */
 	double prepare_ms;        /**< work that later frames reuse; 0 = none was due */
 	double prepare_within_ms; /**< the part of prepare_ms that the frame itself took */

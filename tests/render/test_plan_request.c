@@ -113,15 +113,41 @@ static void finer_request_never_costs_fewer_rays(void **state)
 			/* Some lie beyond the picture's edges. */
 			assert_true(rays(&f) >= (uint64_t)WIDTH * HEIGHT && rays(&f) >= before);
 			assert_true(gz_plan_is_whole(&f.plan));
-			assert_true(gz_plan_is_exact(&f.plan));
+			/* A table says how long steps are, whatever the spacing. */
+			assert_true(gz_plan_is_exact(&f.plan) == (methods[m] != GZ_METHOD_TABLE));
 			gz_plan_free(&f.plan);
 		}
-	struct fixture regions;
-	begin(&regions, GZ_METHOD_DDC, WIDTH, HEIGHT);
-	const uint64_t before = rays(&regions);
-	regions.request.finer = GZ_PLAN_FINER_MAX;
-	assert_true(rays(&regions) == before);
-	gz_plan_free(&regions.plan);
+}
+
+/* Whether tiles stay where the gaze moves, if every pixel has a ray. */
+static void finest_plan_follows_the_gaze_where_it_depends_on_it(void **state)
+{
+	(void)state;
+	static const struct {
+		int method, step_rule;
+		bool stays;
+	} cases[] = {
+		{ GZ_METHOD_ACUITY, GZ_STEP_METHOD, true },
+		{ GZ_METHOD_CONTRAST, GZ_STEP_METHOD, true },
+		{ GZ_METHOD_ACUITY, GZ_STEP_DISTANCE, false },
+		{ GZ_METHOD_TABLE, GZ_STEP_METHOD, false },
+		{ GZ_METHOD_TABLE, GZ_STEP_NONE, true },
+		{ GZ_METHOD_DDC, GZ_STEP_METHOD, false },
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		struct fixture f;
+		begin(&f, cases[i].method, WIDTH, HEIGHT);
+		f.foveation.step_rule = cases[i].step_rule;
+		f.request.finer = GZ_PLAN_FINER_MAX;
+		rays(&f);
+		const uint64_t serial = f.plan.serial;
+		f.request.gaze.x = 0.8F;
+		rays(&f);
+		if ((f.plan.serial == serial) != cases[i].stays)
+			fail_msg("case %zu", i);
+		assert_true(gz_plan_can_grow(&f.foveation) == cases[i].stays);
+		gz_plan_free(&f.plan);
+	}
 }
 
 /* Twice as fine: the widest spacing is half as wide. */
@@ -466,6 +492,7 @@ TEST_SUITE(plan_request)
 		cmocka_unit_test(bound_on_steps_shortens_acuity_steps_and_moves_no_ray),
 		cmocka_unit_test(greater_scale_never_costs_more_rays),
 		cmocka_unit_test(finer_request_never_costs_fewer_rays),
+		cmocka_unit_test(finest_plan_follows_the_gaze_where_it_depends_on_it),
 		cmocka_unit_test(finer_request_divides_spacings),
 		cmocka_unit_test(whole_plan_with_longer_steps_is_not_exact),
 		cmocka_unit_test(fovea_gives_way_last),

@@ -57,6 +57,16 @@ class Session(unittest.TestCase):
         self.assertTrue(self.read("was-0.png") != self.read("was-4.png"), "nothing turned")
         self.replay_is_the_same()
 
+    def test_replay_of_plans_that_grow_gives_the_same_pictures(self):
+        self.record("--method", "acuity", "--foveation.acuity_slope", ".2", "--foveation.still_growth", ".5",
+                    "--stats", self.path("was.json"), frames=9, turn=0)
+        with open(self.path("was.json"), encoding="utf-8") as source:
+            rays = [frame["rays"] for frame in json.load(source)["frames"]]
+        self.assertLess(rays[0], 120 * 90 / 2)
+        self.assertGreaterEqual(rays[8], 120 * 90)
+        self.assertTrue(self.read("was-0.png") != self.read("was-8.png"), "nothing grew")
+        self.replay_is_the_same(frames=9)
+
     def test_replay_of_accumulated_frames_gives_the_same_pictures(self):
         self.record("--temporal.accumulate", "--method", "uniform", turn=0.02)
         self.assertTrue(self.read("was-0.png") != self.read("was-4.png"), "nothing was kept")

@@ -189,6 +189,28 @@ static void what_is_raised_is_read_back_to_the_bit(void **state)
 	}
 }
 
+static void growth_of_plans_is_read_back_to_the_bit(void **state)
+{
+	(void)state;
+	static const double finer[] = { 1, 1 + 1e-15, 4.0 / 3, GZ_PLAN_FINER_MAX };
+	static const char *const wrong[] = { "!finer", "!finer\t0.99", "!finer\t2e6", "!finer\tnan",
+					     "!finer\t1\t1" };
+	double back;
+	char line[32];
+	for (size_t i = 0; i < sizeof finer / sizeof finer[0]; i++) {
+		struct gz_text text = { 0 };
+		gz_session_print_finer(finer[i], &text);
+		text.bytes[text.length - 1] = '\0';
+		assert_int_equal(gz_session_parse_finer(text.bytes, &back), GZ_OK);
+		assert_true(back == finer[i]);
+		gz_text_free(&text);
+	}
+	for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+		snprintf(line, sizeof line, "%s", wrong[i]);
+		assert_int_equal(gz_session_parse_finer(line, &back), GZ_ERR_FORMAT);
+	}
+}
+
 static void changes_of_settings_are_read_back_to_the_bit(void **state)
 {
 	(void)state;
@@ -222,7 +244,7 @@ static void frame_is_read_back_to_the_bit(void **state)
 		check_round_trip(&frame);
 	}
 	frame.reading.point = (struct gz_point) { -3.4e38F, 1e-45F };
-	frame.focus = (struct gz_focus) { { NAN, NAN }, 1, 0 };
+	frame.focus = (struct gz_focus) { .point = { NAN, NAN }, .scale = 1 };
 	check_round_trip(&frame);
 	frame.reading.known = false;
 	check_round_trip(&frame);
@@ -563,6 +585,7 @@ TEST_SUITE(session)
 	const struct CMUnitTest tests[] = {
 		TEST(frame_is_read_back_to_the_bit),
 		TEST(what_is_raised_is_read_back_to_the_bit),
+		TEST(growth_of_plans_is_read_back_to_the_bit),
 		TEST(changes_of_settings_are_read_back_to_the_bit),
 		TEST(session_is_read_back_with_its_changes),
 		TEST(scene_file_has_the_settings_of_the_start),

@@ -1022,6 +1022,7 @@ static enum gz_result make_frame_picture(struct gz_frame_maker *maker,
 	record->bricks_coming = cost.stats.bricks_coming;
 	record->samples = cost.stats.samples;
 	record->kept = cost.kept;
+	record->focus.finer = cost.finer;
 	return GZ_OK;
 }
 
@@ -1079,6 +1080,10 @@ static void tell_spent(struct gz_frame_maker *maker, const struct gz_frame_reque
 		warn_standard_ignores_budget(maker);
 		return;
 	}
+	/* One whose plan has grown gives no reason for a coarser one: what moves makes it fall
+	 * back. */
+	if (record->focus.finer > 1)
+		return;
 	if (gz_attention_spent(&maker->attention, spent_ms, much_kept))
 		gz_warn(maker->log,
 			"attention.budget_ms %g cannot be kept: %s took %.1f ms with its "

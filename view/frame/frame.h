@@ -266,7 +266,8 @@ bool gz_frame_making_labels(const struct gz_frame_maker *maker);
 /** Forget what gz_frame_prepare_labels() makes, and wait for its threads. */
 void gz_frame_drop_labels(struct gz_frame_maker *maker);
 
-/** Drop what earlier frames accumulated: temporal.accumulate starts again with the next frame. */
+/** Drop what earlier frames accumulated and how plans have grown: temporal.accumulate and
+ *  foveation.still_growth start again with the next frame. */
 void gz_frame_forget(struct gz_frame_maker *maker);
 
 /** Whether plan and importance stay the same while the gaze does; otherwise call gz_frame_attend()
@@ -277,7 +278,8 @@ bool gz_frame_settled(const struct gz_frame_maker *maker);
  * coarse and is still adapting. */
 bool gz_frame_refinable(const struct gz_frame_maker *maker);
 
-/** Whether further equal frames would still change the picture: temporal.accumulate. */
+/** Whether further equal frames would still change the picture: temporal.accumulate,
+ *  foveation.still_growth. */
 bool gz_frame_settling(const struct gz_frame_maker *maker);
 
 /**

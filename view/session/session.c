@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "render/picture/image.h"
+#include "render/plan/plan.h"
 
 /* Names of a frame's fields, in their order. */
 static const char *const columns[] = {
@@ -238,6 +239,22 @@ enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised)
 	     !gz_number_parse(fields[4], &raised.greatest) || !(raised.least < raised.greatest)))
 		return GZ_ERR_FORMAT;
 	*out_raised = raised;
+	return GZ_OK;
+}
+
+void gz_session_print_finer(double finer, struct gz_text *text)
+{
+	gz_text_add(text, GZ_SESSION_FINER_WORD "\t%.17g\n", finer);
+}
+
+enum gz_result gz_session_parse_finer(char *line, double *out_finer)
+{
+	char *fields[2];
+	double finer;
+	if (split_fields(line, fields, 2) != 2 || !gz_number_parse(fields[1], &finer) ||
+	    !(finer >= 1 && finer <= GZ_PLAN_FINER_MAX))
+		return GZ_ERR_FORMAT;
+	*out_finer = finer;
 	return GZ_OK;
 }
 

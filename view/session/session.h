@@ -43,6 +43,7 @@
 #define GZ_SESSION_TRANSFER_WORD "!transfer"
 #define GZ_SESSION_RAISE_WORD    "!raise"
 #define GZ_SESSION_ADAPT_WORD    "!adapt"
+#define GZ_SESSION_FINER_WORD    "!finer"
 
 /** What all frames of a session share. */
 struct gz_session_header {
@@ -60,7 +61,7 @@ struct gz_session_frame {
 	struct gz_display display; /**< the picture fills it */
 	/** The gaze. Not stored: connected, seq and sample_ns, and the point of an unknown gaze. */
 	struct gz_gaze_reading reading;
-	struct gz_focus focus; /**< the plan was made for it */
+	struct gz_focus focus; /**< the plan was made for it; finer is in a line of its own */
 	/** What was raised in importance, which is stored in a line of its own. */
 	struct gz_raised raised;
 	/** How an illustration's settings followed what was seen; in a line of its own, too. */
@@ -82,6 +83,17 @@ void gz_session_print_raised(const struct gz_raised *raised, struct gz_text *tex
  * @retval GZ_ERR_FORMAT  not a number of an object and a share
  */
 enum gz_result gz_session_parse_raised(char *line, struct gz_raised *out_raised);
+
+/** Append the line that says how much finer plans are than the method's from the next frame on. */
+void gz_session_print_finer(double finer, struct gz_text *text);
+
+/**
+ * Parse that line.
+ *
+ * @param[in,out] line  without its newline, NUL-terminated; it is changed
+ * @retval GZ_ERR_FORMAT  not a number from 1 to GZ_PLAN_FINER_MAX
+ */
+enum gz_result gz_session_parse_finer(char *line, double *out_finer);
 
 /** Append the line that says how settings of an illustration are changed from the next frame on. */
 void gz_session_print_change(const struct gz_illustration_change *change, struct gz_text *text);

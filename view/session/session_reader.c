@@ -261,6 +261,16 @@ static enum gz_result parse_raise_line(struct gz_session_reader *reader,
 				   ": not an object, a share and a range; the file is damaged");
 }
 
+static enum gz_result parse_finer_line(struct gz_session_reader *reader,
+				       struct gz_session_state *state)
+{
+	strcpy(reader->scratch, reader->line);
+	if (gz_session_parse_finer(reader->scratch, &state->finer) == GZ_OK)
+		return GZ_OK;
+	return refuse_session_line(reader, GZ_SESSION_FINER_WORD
+				   ": not how much finer plans are; the file is damaged");
+}
+
 static enum gz_result parse_change_line(struct gz_session_reader *reader,
 					struct gz_session_state *state)
 {
@@ -286,6 +296,7 @@ static enum gz_result parse_frame_line(struct gz_session_reader *reader,
 					   "time_ns: earlier than that of the previous frame");
 	reader->time_ns = frame.time_ns;
 	reader->frames++;
+	frame.focus.finer = state->finer > 0 ? state->finer : 1;
 	frame.raised = state->raised;
 	frame.change = state->change;
 	*out_frame = frame;
@@ -309,6 +320,8 @@ enum gz_result gz_session_read(struct gz_session_reader *reader, struct gz_sessi
 			(void)parse_transfer_line(reader, state);
 		else if (begins_with(reader->line, GZ_SESSION_RAISE_WORD))
 			(void)parse_raise_line(reader, state);
+		else if (begins_with(reader->line, GZ_SESSION_FINER_WORD))
+			(void)parse_finer_line(reader, state);
 		else if (begins_with(reader->line, GZ_SESSION_ADAPT_WORD))
 			(void)parse_change_line(reader, state);
 		else if (is_end(reader))

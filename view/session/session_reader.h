@@ -22,7 +22,8 @@ struct gz_session_reader;
 struct gz_session_state {
 	struct gz_scene_settings settings;
 	struct gz_transfer transfer;
-	struct gz_raised raised;              /**< in importance; zero-initialised, nothing is */
+	struct gz_raised raised; /**< in importance; zero-initialised, nothing is */
+	double finer;            /**< gz_focus.finer; 0, as in a zero-initialised state: 1 */
 	struct gz_illustration_change change; /**< of combined settings, by what was seen */
 	bool transfer_changed; /**< since the previous frame; each read sets or clears it */
 	bool table_changed;    /**< settings.foveation.table_file has changed: the renderer loads it

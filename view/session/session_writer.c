@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,6 +33,7 @@ struct gz_session_writer {
 	int tables;                        /* spacing tables written so far */
 	struct gz_scene_settings settings; /* of the last frame in the file */
 	struct gz_transfer transfer;
+	double finer;            /* as of the last frame; 0: there was none */
 	struct gz_raised raised; /* as of the last frame */
 	struct gz_illustration_change change;
 	bool gaze_known; /* gaze_ns is valid */
@@ -344,6 +346,10 @@ enum gz_result gz_session_writer_add(struct gz_session_writer *writer,
 		print_transfer(transfer, &writer->lines);
 		writer->transfer = *transfer;
 	}
+	const double finer = fmax(frame->focus.finer, 1);
+	if (finer != fmax(writer->finer, 1))
+		gz_session_print_finer(finer, &writer->lines);
+	writer->finer = finer;
 	if (!gz_raised_same(&writer->raised, &frame->raised))
 		gz_session_print_raised(&frame->raised, &writer->lines);
 	writer->raised = frame->raised;

@@ -79,7 +79,7 @@ static const struct {
 	{ "foveation.acuity_far_share", "share of the slope there" },
 	{ "foveation.acuity_step_growth", "growth of steps" },
 	{ "foveation.acuity_step_error", "change by longer steps" },
-	{ "foveation.still_growth", "rays added at rest, share" },
+	{ "foveation.still_growth", "rays added by a frame" },
 	{ "foveation.contrast_threshold", "least contrast seen" },
 	{ "foveation.contrast_first", "first spacing, times" },
 	{ "foveation.edge_contrast", "contrast of an edge" },

@@ -748,6 +748,7 @@ static enum gz_result cpu_draw(struct gz_raycaster *raycaster, const struct gz_s
 	if (out_stats) {
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
+			.keeps_rays = job.kept != NULL,
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
 			.cast_ms = gz_ns_to_ms(gz_clock_now_ns() - start_ns) - reconstruct_ms,

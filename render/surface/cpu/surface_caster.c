@@ -687,6 +687,7 @@ enum gz_result gz_surface_caster_draw(struct gz_surface_caster *caster,
 	if (out_stats)
 		*out_stats = (struct gz_frame_stats) {
 			.rays = plan->ray_count,
+			.keeps_rays = job.kept != NULL,
 			.kept_rays = atomic_load(&job.kept_rays),
 			.prepare_ms = prepare_ms,
 			.prepare_within_ms = prepare_ms,
