@@ -164,7 +164,8 @@ static enum gz_result start_sequence(struct clip *clip, size_t number)
 	if (mkdir(path, 0777) != 0)
 		return refuse_folder(clip, path, strerror(errno));
 	/* Its plans grow while only the gaze changes, so no other picture may come between. */
-	return sequence->settings.foveation.still_growth > 0
+	const struct gz_foveation *foveation = &sequence->settings.foveation;
+	return foveation->still_growth > 0 && gz_plan_can_grow(foveation)
 		       ? gz_stage_open_maker(&clip->stage, 0, &sequence->own_maker)
 		       : GZ_OK;
 }
@@ -271,9 +272,9 @@ static json_t *sequence_json(struct clip *clip, size_t number)
 {
 	struct sequence *sequence = &clip->sequences[number];
 	const bool converged = number == 0 && clip->request->converged;
-	return json_pack("{ss ss sf}", "folder", sequence->folder, "variant",
-			 converged ? "converged" : clip->study.variants[number].text, "frame_ms",
-			 median_ms(clip, sequence));
+	return json_pack("{ss ss sb sf}", "folder", sequence->folder, "variant",
+			 converged ? "converged" : clip->study.variants[number].text, "keeps_rays",
+			 sequence->own_maker != NULL, "frame_ms", median_ms(clip, sequence));
 }
 
 static json_t *clip_json(struct clip *clip)

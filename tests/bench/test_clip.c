@@ -227,6 +227,14 @@ static void plan_grows_until_frames_are_the_reference(void **state)
 	static const char plain[] = "c/1-acuity-acuity_slope-1-acuity_far_share-1/frame-%04d.png";
 	static const char grown[] =
 		"c/2-acuity-acuity_slope-1-acuity_far_share-1-still_growth-2/frame-%04d.png";
+	json_t *clip = read_description(place, "c/clip.json");
+	const json_t *tests = json_object_get(clip, "tests");
+	assert_true(
+		json_is_false(json_object_get(json_object_get(clip, "reference"), "keeps_rays")));
+	for (size_t i = 0; i < 2; i++)
+		assert_true(json_boolean_value(json_object_get(json_array_get(tests, i),
+							       "keeps_rays")) == (i == 1));
+	json_decref(clip);
 	for (int frame = 0; frame < 20; frame += 19) {
 		char alone[100], growing[100], reference[100];
 		snprintf(alone, sizeof alone, plain, frame);
