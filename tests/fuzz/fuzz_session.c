@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "render/picture/image.h"
+#include "render/plan/plan.h"
 #include "view/session/session_reader.h"
 #include "view/settings/scene_keys.h"
 
@@ -23,6 +24,7 @@ static void require_frame(const struct gz_session_frame *frame, int64_t time_ns)
 	require(frame->height >= 1 && frame->height <= GZ_IMAGE_SIDE_MAX);
 	require(gz_display_valid(&frame->display));
 	require(frame->focus.scale >= 1 && frame->focus.widen >= 0 && frame->focus.widen <= 1);
+	require(frame->focus.finer >= 1 && frame->focus.finer <= GZ_PLAN_FINER_MAX);
 	require(!frame->reading.has_event || (unsigned)frame->reading.event < GZ_EVENT_COUNT);
 }
 
