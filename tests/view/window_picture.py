@@ -166,6 +166,19 @@ class PictureWindow(WindowCase):
         self.until_idle()
         self.assertLess(self.processor_share(), 0.03)
 
+    def test_still_picture_gets_all_of_its_rays_and_then_rests(self):
+        self.start(*STILL, "--method", "standard")
+        standard = self.below_line(self.rest())
+        self.stop()
+        self.start(*COARSE, "--foveation.still_growth", "0.5")
+        self.until(lambda p: self.below_line(p) == standard, "all rays")
+        self.until_idle()
+        self.assertLess(self.processor_share(), 0.03)
+        self.tool("key", "x")
+        self.until(lambda p: self.below_line(p) != standard, "another view")
+        self.tool("key", "r")
+        self.until(lambda p: self.below_line(p) == standard, "all rays of the first view")
+
     def test_axis_views_and_projection_change_the_picture_and_r_brings_it_back(self):
         self.start(*STILL, "--method", "standard")
         first = last = self.rest()

@@ -310,7 +310,8 @@ double gz_window_gaze_patience_s(const struct gz_window *window)
 	if (!window->maker)
 		return STILL_PATIENCE_S;
 	const bool attends = !window->gaze_frozen && !gz_frame_settled(window->maker);
-	if (window->options->turn_deg != 0 || attends || gz_frame_refinable(window->maker))
+	if (window->options->turn_deg != 0 || attends || gz_frame_refinable(window->maker) ||
+	    gz_frame_settling(window->maker))
 		return 1 / window->options->fps;
 	const double patience_s = source_patience_s(window);
 	/* The window is reported to a daemon even if its gaze is not read. */
