@@ -17,6 +17,13 @@ static struct gz_client *open_client(void)
 	return client;
 }
 
+/* Between two reads: if a read meets libzmq's own thread at a conflated socket, libzmq 4.3 keeps
+ * the message back until the next one, and then leaks it (docs/protocol.md). */
+static void wait_for_news(void)
+{
+	gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS / 4);
+}
+
 /* Read until a gaze numbered @p seq or later has come. */
 static struct gz_gaze wait_for_seq(struct gz_client *client, uint64_t seq)
 {
@@ -26,7 +33,7 @@ static struct gz_gaze wait_for_seq(struct gz_client *client, uint64_t seq)
 		if (gz_clock_now_ns() > deadline_ns)
 			fail_msg("no gaze numbered %llu or later came; the last is %llu",
 				 (unsigned long long)seq, (unsigned long long)gaze.seq);
-		gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS / 4);
+		wait_for_news();
 	}
 	return gaze;
 }
@@ -58,7 +65,7 @@ static int64_t wait_connected(struct gz_client *client, bool wanted)
 		if (gz_clock_now_ns() > start_ns + PATIENCE_NS)
 			fail_msg("the client is %sconnected for %d s", wanted ? "not " : "",
 				 PATIENCE_S);
-		gz_clock_sleep_until_ns(gz_clock_now_ns() + GZ_NS_PER_MS / 4);
+		wait_for_news();
 	}
 	return gz_clock_now_ns() - start_ns;
 }
@@ -163,22 +170,25 @@ static void latest_without_news_repeats_the_last_and_its_age_grows(void **state)
 static void slow_reader_gets_the_newest_and_counts_the_overtaken(void **state)
 {
 	(void)state;
-	enum { MESSAGES = 1000 };
+	enum { MESSAGES = 1000, PAUSE_MS = 100 };
 	struct publisher publisher;
-	struct gz_client *slow = open_client(), *other = open_client();
+	struct gz_client *slow = open_client();
 	publisher_open(&publisher, "latest");
 	send_until_received(&publisher, slow, 1);
-	send_until_received(&publisher, other, 1);
 	struct gz_client_counters before, after;
+	struct gz_gaze gaze;
 	gz_client_get_counters(slow, &before);
 	for (uint64_t seq = 2; seq <= MESSAGES; seq++) {
-		struct gz_gaze gaze = gaze_at(seq, 0.5f, 0.5f);
+		gaze = gaze_at(seq, 0.5f, 0.5f);
 		publisher_send_latest(&publisher, &gaze);
 	}
-	/* Once the other client has the last message, that of the slow one has arrived or soon
-	 * will. */
-	wait_for_seq(other, MESSAGES);
-	wait_for_seq(slow, MESSAGES);
+	/* Without reads while the messages arrive, see wait_for_news(). */
+	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
+	do {
+		assert_true(gz_clock_now_ns() < deadline_ns);
+		gz_clock_sleep_until_ns(gz_clock_now_ns() + PAUSE_MS * GZ_NS_PER_MS);
+		assert_int_equal(gz_client_latest(slow, &gaze, NULL), GZ_OK);
+	} while (gaze.seq != MESSAGES);
 	gz_client_get_counters(slow, &after);
 	uint64_t taken = after.received - before.received;
 	print_message("took %llu of %d messages\n", (unsigned long long)taken, MESSAGES - 1);
@@ -186,7 +196,6 @@ static void slow_reader_gets_the_newest_and_counts_the_overtaken(void **state)
 	/* Repeats of number 1 are not new and skip nothing. */
 	assert_in_range(after.skipped, MESSAGES - 1 - taken, MESSAGES - 2);
 	gz_client_close(&slow);
-	gz_client_close(&other);
 	publisher_close(&publisher);
 }
 
@@ -210,6 +219,7 @@ static void malformed_messages_are_counted_and_change_nothing(void **state)
 		publisher_send_frame(&publisher, bytes[i], sizes[i]);
 		do {
 			struct gz_gaze gaze;
+			wait_for_news();
 			assert_true(gz_clock_now_ns() < deadline_ns);
 			assert_int_equal(gz_client_latest(client, &gaze, NULL), GZ_OK);
 			assert_int_equal(gaze.seq, 5);
@@ -255,8 +265,10 @@ static void killed_daemon_that_returns_is_found_within_a_quarter_second(void **s
 	}
 	struct gz_gaze gaze;
 	int64_t deadline_ns = gz_clock_now_ns() + PATIENCE_NS;
-	while (gz_client_latest(client, &gaze, NULL) == GZ_OK && gaze.seq >= 1000000)
+	while (gz_client_latest(client, &gaze, NULL) == GZ_OK && gaze.seq >= 1000000) {
 		assert_true(gz_clock_now_ns() < deadline_ns);
+		wait_for_news();
+	}
 	publisher_process_kill(process);
 	struct gz_client_counters counters;
 	gz_client_get_counters(client, &counters);
