@@ -33,7 +33,9 @@ SIMD void look_up_values(const struct gz_cast *cast, enum gz_voxel_type type, in
 	for (int first = 0; first < LOOK_UP_PLACES; first += SIMD_LANES) {
 		vf at[3], inside[3];
 		load_places(places, first, at);
-		if (block_places(cast, &block, wide, at, vm_all(), inside))
+		for (int axis = 0; axis < 3; axis++)
+			inside[axis] = at[axis] - block.base[axis];
+		if (block_places(cast, &block, wide, vm_all(), inside))
 			vf_store(places->by_block + first,
 				 block_sample(&block, type, wide, inside));
 		else

@@ -58,16 +58,18 @@ SIMD void block_load(enum gz_voxel_type type, int wide, const void *from, int64_
 }
 
 /* The bytes that `control` names in the slices below and above a lane. Bits 4 and 5 of each byte of
- * `control` are the number of the slice below. */
+ * `control` are the number of the slice below, 0 to 2; shuffles ignore them. */
 SIMD void block_look_up(const vi slices[BLOCK_EDGE], vi control, vi *below, vi *above)
 {
-	/* shuffles ignore bits 4 to 6; blends follow bit 7 */
-	const vi odd = _mm256_slli_epi16(control, 3), second = _mm256_slli_epi16(control, 2);
+	const vi second = _mm256_cmpgt_epi8(control, vi_set(0x0F0F0F0F));
+	const vi third = _mm256_cmpgt_epi8(control, vi_set(0x1F1F1F1F));
 	vi found[BLOCK_EDGE];
 	for (int z = 0; z < BLOCK_EDGE; z++)
 		found[z] = _mm256_shuffle_epi8(slices[z], control);
-	*below = _mm256_blendv_epi8(_mm256_blendv_epi8(found[0], found[1], odd), found[2], second);
-	*above = _mm256_blendv_epi8(_mm256_blendv_epi8(found[1], found[2], odd), found[3], second);
+	*below =
+		_mm256_blendv_epi8(_mm256_blendv_epi8(found[0], found[1], second), found[2], third);
+	*above =
+		_mm256_blendv_epi8(_mm256_blendv_epi8(found[1], found[2], second), found[3], third);
 }
 
 /* The number in the block of the voxel at these places. */

@@ -110,12 +110,11 @@ SIMD int block_holds(const vf places[3], int wide, vm mask)
 	return !vm_any(vm_and(mask, beyond));
 }
 
-/* Find places within the block. Returns whether those of all lanes of mask lie in it. */
-SIMD int block_places(const struct gz_cast *cast, const struct block *block, int wide,
-		      const vf at[3], vm mask, vf places[3])
+/* Whether places counted from the block's first voxel, of all lanes of mask, lie in it. Moves those
+ * beyond the volume's data into it. */
+SIMD int block_places(const struct gz_cast *cast, const struct block *block, int wide, vm mask,
+		      vf places[3])
 {
-	for (int axis = 0; axis < 3; axis++)
-		places[axis] = at[axis] - block->base[axis];
 	if (__builtin_expect(block_holds(places, wide, mask), 1))
 		return 1;
 	block_clamp(cast, block, wide, places);

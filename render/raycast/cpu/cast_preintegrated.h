@@ -58,7 +58,7 @@ static __attribute__((noinline)) vf settle_doubtful(const struct gz_cast *cast, 
 						    vf opacity, vm marked)
 {
 	const vm shows = segments_have_visible(cast, front, back, marked);
-	const vf settled = vf_select(shows, vf_abs(opacity), vf_set(0));
+	const vf settled = vf_keep(shows, vf_abs(opacity));
 	return vf_select(marked, settled, opacity);
 }
 

@@ -73,30 +73,11 @@ SIMD vm segments_meet(const struct rays *rays, vf k)
 
 #ifdef SIMD_BLOCKS
 
-/* A block of voxels for the rays of a level. */
-struct level_block {
-	int wide;
-	__m128 base;
-	struct block block;
-};
-
-SIMD void find_level_block(const struct march *m, const struct beam *beam, float level,
-			   struct level_block *at)
-{
-	if (!block_serves(at->wide, beam, level, at->base))
-		at->base = beam_block(m, at->wide, beam, level, &at->block);
-}
-
-SIMD vf fetch_level(const struct march *m, vf k, vm needed, const struct level_block *at)
-{
-	return fetch_together(m, at->wide, k, needed, &at->block);
-}
-
 SIMD struct level_block first_level_block(const struct march *m, int wide, const struct beam *beam,
 					  float level)
 {
 	struct level_block at = { .wide = wide };
-	at.base = beam_block(m, wide, beam, level, &at.block);
+	load_level_block(m, beam, level, &at);
 	return at;
 }
 

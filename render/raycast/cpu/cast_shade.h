@@ -39,7 +39,7 @@ SIMD struct colour unpack_colour(vi packed)
 /* Take a share of the light that still comes through. */
 SIMD vf take_light(vf opacity, vm visible, struct light *light)
 {
-	const vf weight = light->through * vf_select(visible, opacity, vf_set(0));
+	const vf weight = light->through * vf_keep(visible, opacity);
 	light->through = light->through - weight;
 	return weight;
 }
@@ -76,8 +76,7 @@ SIMD void gather_hit_depths(const struct gz_cast *cast, const struct gz_cast_til
 {
 	const vf depth = vf_load(tile->hit_depth + first);
 	const vm met = vf_less(depth, vf_set(INFINITY));
-	const vf k =
-		vf_select(met, depth * vf_set(1 / cast->step[tile->step]) - rays->zero, vf_set(0));
+	const vf k = vf_keep(met, depth * vf_set(1 / cast->step[tile->step]) - rays->zero);
 	light->depth = vf_fma(light->through, k, light->depth);
 }
 

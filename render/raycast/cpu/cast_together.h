@@ -52,26 +52,55 @@ SIMD __m128 beam_block(const struct march *m, int wide, const struct beam *beam,
 			  _mm_blendv_ps(low, backward, beam->low_step), block);
 }
 
-/* The values at k of the needed lanes, from the block if it holds them. */
-SIMD vf fetch_together(const struct march *m, int wide, vf k, vm needed, const struct block *block)
+_Static_assert(TILE_PARTS <= 2, "take_together() takes two registers");
+
+/* The block that serves the rays at a level. */
+struct level_block {
+	int wide;
+	int holds; /* it holds all rays of the beam there, so none need be tested */
+	__m128 base;
+	struct block block;
+};
+
+SIMD void load_level_block(const struct march *m, const struct beam *beam, float level,
+			   struct level_block *at)
 {
-	vf at[3], places[3];
-	for (int axis = 0; axis < 3; axis++)
-		at[axis] = vf_fma(k, m->rays->delta[axis], m->rays->datum[axis]);
-	if (__builtin_expect(!block_places(m->cast, block, wide, at, needed, places), 0))
+	at->base = beam_block(m, at->wide, beam, level, &at->block);
+	at->holds = block_serves(at->wide, beam, level, at->base);
+}
+
+/* Go on to a level. */
+SIMD void find_level_block(const struct march *m, const struct beam *beam, float level,
+			   struct level_block *at)
+{
+	at->holds = block_serves(at->wide, beam, level, at->base);
+	if (!at->holds)
+		load_level_block(m, beam, level, at);
+}
+
+/* The values at k of the needed lanes, from the block if it holds them. */
+SIMD vf fetch_level(const struct march *m, vf k, vm needed, const struct level_block *at)
+{
+	vf place[3], places[3];
+	for (int axis = 0; axis < 3; axis++) {
+		place[axis] = vf_fma(k, m->rays->delta[axis], m->rays->datum[axis]);
+		places[axis] = place[axis] - at->block.base[axis];
+	}
+	if (__builtin_expect(!at->holds, 0) &&
+	    !block_places(m->cast, &at->block, at->wide, needed, places))
 		return fetch_sample(m, k, needed);
-	return block_sample(block, m->reading.type, wide, places);
+	return block_sample(&at->block, m->reading.type, at->wide, places);
 }
 
 /* Take the samples of one register at a level. */
-SIMD uint32_t take_level(const struct march *m, const struct look_up *look_up, int wide,
-			 const struct beam *beam, float level, const struct block *block, int part,
-			 struct progress *on)
+SIMD uint32_t take_level(const struct march *m, const struct look_up *look_up,
+			 const struct beam *beam, float level, const struct level_block *at,
+			 int part, struct progress *on)
 {
 	const struct march one = march_of_part(m, part);
 	const vf k = beam->first[part] + vf_set(level);
 	const vm within = vm_and(vf_less(one.rays->first, k), vf_less(k, one.rays->end));
-	const vf value = fetch_together(&one, wide, k, vm_and(within, on->alive[part]), block);
+	const vf value = fetch_level(&one, k, vm_and(within, on->alive[part]), at);
 	const uint32_t samples = settle_part(m, part, on);
 	on->before[part] = (struct waiting) { k, entry_of(look_up, value), within };
 	return samples;
@@ -86,13 +115,14 @@ SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up
 	const float *levels = list->levels;
 	const int count = list->count;
 	uint32_t samples = 0;
-	struct block block;
-	__m128 base = beam_block(m, wide, beam, levels[0], &block);
+	struct level_block at = { .wide = wide };
+	load_level_block(m, beam, levels[0], &at);
 	for (int i = 0; i < count && beam_alive(beam, on->alive); i++) {
-		if (!block_serves(wide, beam, levels[i], base))
-			base = beam_block(m, wide, beam, levels[i], &block);
-		for (int part = 0; part < beam_parts(beam); part++)
-			samples += take_level(m, look_up, wide, beam, levels[i], &block, part, on);
+		find_level_block(m, beam, levels[i], &at);
+		samples += take_level(m, look_up, beam, levels[i], &at, 0, on);
+		/* Written out, because both registers then share what they read: 2 % faster. */
+		if (TILE_PARTS == 2 && beam->parts == 2)
+			samples += take_level(m, look_up, beam, levels[i], &at, 1, on);
 	}
 	return samples;
 }

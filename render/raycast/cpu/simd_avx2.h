@@ -66,6 +66,11 @@ SIMD vf vf_select(vm m, vf yes, vf no)
 {
 	return _mm256_blendv_ps(no, yes, m);
 }
+/* Zero outside the mask. */
+SIMD vf vf_keep(vm m, vf a)
+{
+	return _mm256_and_ps(m, a);
+}
 SIMD vf vf_from_i(vi a)
 {
 	return _mm256_cvtepi32_ps(a);

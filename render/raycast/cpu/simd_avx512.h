@@ -68,6 +68,11 @@ SIMD vf vf_select(vm m, vf yes, vf no)
 {
 	return _mm512_mask_blend_ps(m, no, yes);
 }
+/* Zero outside the mask. */
+SIMD vf vf_keep(vm m, vf a)
+{
+	return _mm512_maskz_mov_ps(m, a);
+}
 SIMD vf vf_from_i(vi a)
 {
 	return _mm512_cvtepi32_ps(a);

@@ -50,6 +50,11 @@ SIMD vf vf_select(vm m, vf yes, vf no)
 {
 	return (vf)((m & (vi)yes) | (~m & (vi)no));
 }
+/* Zero outside the mask. */
+SIMD vf vf_keep(vm m, vf a)
+{
+	return (vf)(m & (vi)a);
+}
 SIMD vf vf_fma(vf a, vf b, vf c)
 {
 	return a * b + c;
