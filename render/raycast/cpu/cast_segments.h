@@ -71,17 +71,7 @@ SIMD vm segments_meet(const struct rays *rays, vf k)
 	return vm_but(vm_but(rays->hit, vf_less(k, rays->first)), vf_less(rays->end, k));
 }
 
-#ifdef SIMD_BLOCKS
-
-SIMD struct level_block first_level_block(const struct march *m, int wide, const struct beam *beam,
-					  float level)
-{
-	struct level_block at = { .wide = wide };
-	load_level_block(m, beam, level, &at);
-	return at;
-}
-
-#else
+#ifndef SIMD_BLOCKS
 
 struct level_block {
 	int none;

@@ -69,6 +69,14 @@ SIMD void load_level_block(const struct march *m, const struct beam *beam, float
 	at->holds = block_serves(at->wide, beam, level, at->base);
 }
 
+SIMD struct level_block first_level_block(const struct march *m, int wide, const struct beam *beam,
+					  float level)
+{
+	struct level_block at = { .wide = wide };
+	load_level_block(m, beam, level, &at);
+	return at;
+}
+
 /* Go on to a level. */
 SIMD void find_level_block(const struct march *m, const struct beam *beam, float level,
 			   struct level_block *at)
@@ -115,8 +123,7 @@ SIMD uint32_t take_together(const struct march *m, const struct look_up *look_up
 	const float *levels = list->levels;
 	const int count = list->count;
 	uint32_t samples = 0;
-	struct level_block at = { .wide = wide };
-	load_level_block(m, beam, levels[0], &at);
+	struct level_block at = first_level_block(m, wide, beam, levels[0]);
 	for (int i = 0; i < count && beam_alive(beam, on->alive); i++) {
 		find_level_block(m, beam, levels[i], &at);
 		samples += take_level(m, look_up, beam, levels[i], &at, 0, on);
